@@ -1,0 +1,223 @@
+//! The report of one episode: what was concluded, what was asked, and what it cost.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::calibration::Calibration;
+use crate::household::{ClassLabel, ObjectId, Owners, OwnershipBoolean, Scores, Source, UsageType};
+
+/// The whole report.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Report {
+    /// The episode's name.
+    pub episode: String,
+    /// The model that scored, worded and read.
+    pub model: String,
+    /// The gate that chose the questions.
+    pub gate: Gate,
+    /// The seed of the simulated person.
+    pub seed: u64,
+    /// Every other setting that the result depends on.
+    pub parameters: Parameters,
+    /// The thresholds that were used; `null` where the model has none and no guarantee holds.
+    pub calibration: Option<Calibration>,
+    /// Every thing, in the episode's order.
+    pub objects: Vec<ObjectReport>,
+    /// Every question, in the order asked.
+    pub questions: Vec<QuestionReport>,
+    /// Accuracy before the first question and after each one; only where the truth is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Vec<CurvePoint>")]
+    pub curve: Option<Vec<CurvePoint>>,
+    /// The result in figures.
+    pub metrics: MetricsReport,
+    /// What the run took.
+    pub cost: Cost,
+    /// Why it ended.
+    pub stopped: Stopped,
+}
+
+/// Which rule decides what is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Gate {
+    /// Conformal risk control on the share of wrong owner sets (the default).
+    Risk,
+    /// Conformal prediction over owner sets: ask where more than one set remains.
+    Set,
+    /// The paper's: cp_s against q_cp.
+    Paper,
+    /// Ask about everything.
+    Always,
+    /// Ask nothing.
+    Never,
+}
+
+/// The settings that a result depends on, beside model, gate and seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Parameters {
+    /// Number of neighbours, K_near.
+    pub k_near: usize,
+    /// Number of look-alikes, K_sim.
+    pub k_sim: usize,
+    /// Scale of the Gaussian weight of a neighbour, in metres.
+    pub sigma: f64,
+    /// Factor on the vertical axis.
+    pub gamma: f64,
+    /// How far back usage counts, in days.
+    pub window_days: u32,
+    /// DETECT-SHARE: the least score of a shared owner, ε_min.
+    pub epsilon_min: f64,
+    /// DETECT-SHARE: the largest spread among shared owners, ε_in.
+    pub epsilon_in: f64,
+    /// DETECT-SHARE: the least gap to the others, ε_out.
+    pub epsilon_out: f64,
+    /// The largest number of questions, Q_max.
+    pub max_questions: usize,
+    /// Who answered: `simulated`, `terminal` or `scripted`.
+    pub answers: String,
+}
+
+/// What is concluded about one thing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectReport {
+    /// The thing.
+    pub id: ObjectId,
+    /// Its class label.
+    pub class: ClassLabel,
+    /// The score of every member of the household.
+    pub scores: Scores,
+    /// The owners; empty where somebody outside the household owns it.
+    pub owners: Owners,
+    /// Whether a person said so or a model concluded it.
+    pub source: Source,
+    /// The plausible owners Γ(o).
+    pub prediction_set: Owners,
+    /// The paper's uncertainty cp_s(o).
+    pub uncertainty: f64,
+    /// The probability of the best owner set; 1 where a person answered.
+    pub confidence: f64,
+    /// Whether DETECT-SHARE holds the thing to be shared.
+    pub shared: bool,
+    /// The model failed on this thing, and this is why; its scores say nothing then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
+    pub problem: Option<String>,
+    /// The true owners, where known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Owners")]
+    pub truth: Option<Owners>,
+}
+
+/// What became of an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AnswerStatus {
+    /// It settled whose the thing is.
+    Answered,
+    /// It did not; somebody else may be asked.
+    Unresolved,
+}
+
+/// One question and its answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct QuestionReport {
+    /// The number of the question, from 1.
+    pub step: usize,
+    /// The thing that it is about.
+    pub object_id: ObjectId,
+    /// The question as it was put.
+    pub question: String,
+    /// The answer as it was given.
+    pub answer: String,
+    /// How the answer was read.
+    pub ownership: OwnershipBoolean,
+    /// What became of it.
+    pub status: AnswerStatus,
+    /// cp_s before the question.
+    pub uncertainty_before: f64,
+    /// Γ before the question.
+    pub prediction_set_before: Owners,
+}
+
+/// Accuracy after a number of questions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CurvePoint {
+    /// Questions so far.
+    pub step: usize,
+    /// Share of things whose owner set is exactly right.
+    pub subset_accuracy: f64,
+    /// Mean overlap of owner sets.
+    pub mean_jaccard: f64,
+    /// Micro-averaged F1 over owner labels.
+    pub micro_f1: f64,
+}
+
+/// The paper's metrics (Appendix E) over a set of things.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MetricsSummary {
+    /// How many things were judged.
+    pub objects: usize,
+    /// Share of things whose owner set is exactly right.
+    pub subset_accuracy: f64,
+    /// Mean overlap of owner sets; two empty sets overlap fully.
+    pub mean_jaccard: f64,
+    /// Right owner labels among those given; 0 where none was given.
+    pub micro_precision: f64,
+    /// Right owner labels among the true ones; 0 where there is none.
+    pub micro_recall: f64,
+    /// Harmonic mean of the two; 0 where both are 0.
+    pub micro_f1: f64,
+}
+
+/// The result in figures.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MetricsReport {
+    /// Over all things; only where the truth is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "MetricsSummary")]
+    pub overall: Option<MetricsSummary>,
+    /// By usage type; only where the truth says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "BTreeMap<UsageType, MetricsSummary>")]
+    pub by_usage_type: Option<BTreeMap<UsageType, MetricsSummary>>,
+    /// How many questions were asked.
+    pub questions: usize,
+}
+
+/// What a run took.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cost {
+    /// Requests to the model.
+    pub model_calls: u64,
+    /// Tool calls that the model made.
+    pub tool_calls: u64,
+    /// Tokens sent to a language model; the embedded model uses none.
+    pub prompt_tokens: u64,
+    /// Tokens received from a language model; the embedded model uses none.
+    pub completion_tokens: u64,
+    /// Wall-clock time, in seconds. The one field that differs between equal runs.
+    pub seconds: f64,
+}
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Stopped {
+    /// The gate finds everything settled.
+    Confident,
+    /// Q_max questions were asked.
+    MaxQuestions,
+    /// Something is unsettled, but nobody can or will say more about it.
+    NothingLeftToAsk,
+}
