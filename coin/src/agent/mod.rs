@@ -1,0 +1,294 @@
+//! The agent: Algorithm 1 of the paper as a state machine. Events go in, effects come out.
+//!
+//! There is no await, no clock and no randomness here; a test is a list of events. The driver performs the
+//! effects and reports back. The results of one pass may arrive in any order: they are taken in together when
+//! the pass is complete.
+
+mod effect;
+mod event;
+mod state;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use coin_schemas::household::ObjectId;
+use coin_schemas::report::{Gate, Stopped};
+use thiserror::Error;
+
+pub use effect::Effect;
+pub use event::{Event, Inference};
+pub use state::{Known, KnownSource, ObjectState};
+
+use crate::calibration::Thresholds;
+use crate::dialogue::Reading;
+use crate::gate::{compare_ids, compare_priority, wants_to_ask};
+use crate::sharing::ShareThresholds;
+
+/// BUILD-KNOWN: an inferred owner set counts as known from this probability on. Less would feed guesses back as
+/// facts, which is how the paper's own failure, the cup given to Mary, came about.
+pub const KNOWN_CONFIDENCE: f64 = 0.9;
+
+/// How often a thing is asked about when answers leave it open.
+pub const MOST_TIMES_ASKED: u32 = 2;
+
+/// Which things are inferred again after an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Reinference {
+    /// Those that can see a thing whose known owners changed. A thing that no model could score sees nothing and is
+    /// left to the questions.
+    ChangedContext,
+    /// Every thing that nobody was asked about, as Algorithm 1 has it.
+    EveryUnasked,
+}
+
+/// The settings of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AgentSettings {
+    /// Which rule decides what is asked.
+    pub gate: Gate,
+    /// What the rule compares with.
+    pub thresholds: Thresholds,
+    /// DETECT-SHARE.
+    pub share: ShareThresholds,
+    /// Q_max.
+    pub max_questions: usize,
+    /// Which things are inferred again after an answer.
+    pub reinference: Reinference,
+}
+
+/// An event that does not belong to the state that the agent is in. It changes nothing.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum UnexpectedEvent {
+    /// `Started` came twice.
+    #[error("the run has already started")]
+    AlreadyStarted,
+    /// A result came for a thing that no inference is under way for.
+    #[error("no inference of thing {object} is under way")]
+    NotInferring {
+        /// The thing.
+        object: ObjectId,
+    },
+    /// An answer came although nobody was asked.
+    #[error("no question is open")]
+    NotAsking,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Phase {
+    Idle,
+    Inferring { pending: BTreeSet<ObjectId>, finished: BTreeMap<ObjectId, Result<Inference, String>> },
+    Asking { object: ObjectId },
+    Finished,
+}
+
+/// Algorithm 1: infer, gate, ask, apply the answer, and again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agent {
+    settings: AgentSettings,
+    objects: BTreeMap<ObjectId, ObjectState>,
+    /// BUILD-KNOWN as the last pass saw it.
+    known: BTreeMap<ObjectId, Known>,
+    questions: usize,
+    phase: Phase,
+}
+
+impl Agent {
+    /// An agent for these things; duplicates count once.
+    pub fn new(settings: AgentSettings, objects: impl IntoIterator<Item = ObjectId>) -> Self {
+        let objects = objects.into_iter().map(|object| (object, ObjectState::default())).collect();
+        Self { settings, objects, known: BTreeMap::new(), questions: 0, phase: Phase::Idle }
+    }
+
+    /// Takes over what a person answered before the run; the thing is not asked about again. Call it before
+    /// `Started`. Unknown things and unresolved answers are passed over.
+    pub fn remember_answer(&mut self, object: &ObjectId, reading: Reading) {
+        if let Some(state) = self.objects.get_mut(object) {
+            state.apply_reading(reading);
+        }
+    }
+
+    /// The settings of the run.
+    pub fn settings(&self) -> &AgentSettings {
+        &self.settings
+    }
+
+    /// What is believed of a thing.
+    pub fn object(&self, object: &ObjectId) -> Option<&ObjectState> {
+        self.objects.get(object)
+    }
+
+    /// The number of questions that were put so far.
+    pub fn questions(&self) -> usize {
+        self.questions
+    }
+
+    /// Takes one event and says what is to be done. An unexpected event changes nothing.
+    pub fn handle(&mut self, event: Event) -> Result<Vec<Effect>, UnexpectedEvent> {
+        match event {
+            Event::Started => match self.phase {
+                Phase::Idle => Ok(self.start_pass()),
+                _ => Err(UnexpectedEvent::AlreadyStarted),
+            },
+            Event::Inferred { object, inference } => self.take_result(object, Ok(inference)),
+            Event::InferenceFailed { object, reason } => self.take_result(object, Err(reason)),
+            Event::Answered { reading } => {
+                let object = self.open_question()?;
+                Ok(self.apply_answer(&object, reading))
+            }
+            Event::Declined => {
+                let object = self.open_question()?;
+                self.questions += 1;
+                if let Some(state) = self.objects.get_mut(&object) {
+                    state.close_to_questions();
+                }
+                Ok(self.after_question())
+            }
+            Event::NobodyLeft => {
+                self.open_question()?;
+                Ok(self.finish(Stopped::NothingLeftToAsk))
+            }
+        }
+    }
+
+    fn open_question(&self) -> Result<ObjectId, UnexpectedEvent> {
+        match &self.phase {
+            Phase::Asking { object } => Ok(object.clone()),
+            _ => Err(UnexpectedEvent::NotAsking),
+        }
+    }
+
+    /// Lines 4 to 7 of Algorithm 1: BUILD-KNOWN, then LLM-INFER for the things that need it.
+    fn start_pass(&mut self) -> Vec<Effect> {
+        let known = self.build_known();
+        let changed: BTreeSet<&ObjectId> =
+            self.objects.keys().filter(|object| known.get(*object) != self.known.get(*object)).collect();
+        let mut objects: Vec<ObjectId> = self
+            .objects
+            .iter()
+            .filter(|(_, state)| state.answer().is_none())
+            .filter(|(_, state)| match self.settings.reinference {
+                Reinference::EveryUnasked => true,
+                Reinference::ChangedContext => {
+                    !state.was_inferred() || state.related().iter().any(|related| changed.contains(related))
+                }
+            })
+            .map(|(object, _)| object.clone())
+            .collect();
+        objects.sort_by(compare_ids);
+        self.known = known;
+        if objects.is_empty() {
+            return self.ask_or_finish();
+        }
+        self.phase =
+            Phase::Inferring { pending: objects.iter().cloned().collect(), finished: BTreeMap::new() };
+        vec![Effect::Infer { objects }]
+    }
+
+    /// BUILD-KNOWN: answered owners, and inferred ones of at least [`KNOWN_CONFIDENCE`].
+    fn build_known(&self) -> BTreeMap<ObjectId, Known> {
+        self.objects
+            .iter()
+            .filter_map(|(object, state)| state.known().map(|known| (object.clone(), known)))
+            .collect()
+    }
+
+    fn take_result(
+        &mut self,
+        object: ObjectId,
+        result: Result<Inference, String>,
+    ) -> Result<Vec<Effect>, UnexpectedEvent> {
+        let Phase::Inferring { pending, finished } = &mut self.phase else {
+            return Err(UnexpectedEvent::NotInferring { object });
+        };
+        if !pending.remove(&object) {
+            return Err(UnexpectedEvent::NotInferring { object });
+        }
+        finished.insert(object, result);
+        if !pending.is_empty() {
+            return Ok(Vec::new());
+        }
+        let finished = std::mem::take(finished);
+        let mut recorded: Vec<ObjectId> = Vec::new();
+        for (object, result) in finished {
+            let Some(state) = self.objects.get_mut(&object) else { continue };
+            match result {
+                Ok(inference) => {
+                    state.apply_inference(inference, &self.settings);
+                    recorded.push(object);
+                }
+                Err(reason) => state.apply_failure(reason),
+            }
+        }
+        recorded.sort_by(compare_ids);
+        let mut effects = Vec::new();
+        if !recorded.is_empty() {
+            effects.push(Effect::Record { objects: recorded });
+        }
+        effects.extend(self.ask_or_finish());
+        Ok(effects)
+    }
+
+    /// Lines 13 to 17 of Algorithm 1: stop where the gate finds nothing to ask, else ask about the least sure.
+    /// Things that were asked about less often come first.
+    fn ask_or_finish(&mut self) -> Vec<Effect> {
+        let AgentSettings { gate, thresholds, .. } = &self.settings;
+        let unsettled: Vec<(&ObjectId, &ObjectState)> = self
+            .objects
+            .iter()
+            .filter(|(_, state)| state.answer().is_none())
+            .filter(|(_, state)| {
+                state
+                    .assessment()
+                    .map_or(*gate != Gate::Never, |assessment| wants_to_ask(*gate, thresholds, assessment))
+            })
+            .collect();
+        if unsettled.is_empty() {
+            return self.finish(Stopped::Confident);
+        }
+        if self.questions >= self.settings.max_questions {
+            return self.finish(Stopped::MaxQuestions);
+        }
+        let next = unsettled
+            .into_iter()
+            .filter(|(_, state)| state.may_be_asked())
+            .min_by(|left, right| {
+                left.1.times_asked().cmp(&right.1.times_asked()).then_with(|| {
+                    match (left.1.assessment(), right.1.assessment()) {
+                        (Some(a), Some(b)) => compare_priority(*gate, (left.0, a), (right.0, b)),
+                        (None, Some(_)) => std::cmp::Ordering::Less,
+                        (Some(_), None) => std::cmp::Ordering::Greater,
+                        (None, None) => compare_ids(left.0, right.0),
+                    }
+                })
+            })
+            .map(|(object, _)| object.clone());
+        match next {
+            Some(object) => {
+                self.phase = Phase::Asking { object: object.clone() };
+                vec![Effect::Ask { object }]
+            }
+            None => self.finish(Stopped::NothingLeftToAsk),
+        }
+    }
+
+    /// APPLY-ANSWER and the counter, lines 19 and 20 of Algorithm 1.
+    fn apply_answer(&mut self, object: &ObjectId, reading: Reading) -> Vec<Effect> {
+        self.questions += 1;
+        if let Some(state) = self.objects.get_mut(object) {
+            state.apply_reading(reading);
+        }
+        self.after_question()
+    }
+
+    /// Lines 21 to 24 of Algorithm 1: stop at Q_max without another inference, else go round again.
+    fn after_question(&mut self) -> Vec<Effect> {
+        if self.questions >= self.settings.max_questions {
+            return self.finish(Stopped::MaxQuestions);
+        }
+        self.start_pass()
+    }
+
+    fn finish(&mut self, stopped: Stopped) -> Vec<Effect> {
+        self.phase = Phase::Finished;
+        vec![Effect::Finish { stopped }]
+    }
+}

@@ -1,0 +1,141 @@
+//! D[o] of Algorithm 1: what the agent believes of one thing.
+
+use coin_schemas::household::Score;
+use coin_schemas::model::RelatedObjects;
+use coin_schemas::report::Gate;
+
+use super::{AgentSettings, Inference, KNOWN_CONFIDENCE, MOST_TIMES_ASKED};
+use crate::calibration::Assessment;
+use crate::dialogue::Reading;
+use crate::owners::{OwnerSet, OwnerSetDistribution};
+
+/// What is reliably known of a thing's owners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Known {
+    /// The owners.
+    pub owners: OwnerSet,
+    /// How they are known.
+    pub source: KnownSource,
+}
+
+/// How owners are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum KnownSource {
+    /// A person said so.
+    Answered,
+    /// A model concluded it with a probability of at least [`KNOWN_CONFIDENCE`].
+    Inferred,
+}
+
+/// What is believed of one thing.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ObjectState {
+    belief: Option<Belief>,
+    answer: Option<Reading>,
+    times_asked: u32,
+    closed_to_questions: bool,
+    problem: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Belief {
+    inference: Inference,
+    assessment: Assessment,
+    owners: OwnerSet,
+}
+
+impl ObjectState {
+    /// The score of every member; `None` before the first inference.
+    pub fn scores(&self) -> Option<&[Score]> {
+        self.belief.as_ref().map(|belief| belief.inference.scores.as_slice())
+    }
+
+    /// The probabilities of owner sets; `None` before the first inference.
+    pub fn distribution(&self) -> Option<&OwnerSetDistribution> {
+        self.belief.as_ref().map(|belief| &belief.inference.distribution)
+    }
+
+    /// What the gates make of the scores; `None` before the first inference.
+    pub fn assessment(&self) -> Option<&Assessment> {
+        self.belief.as_ref().map(|belief| &belief.assessment)
+    }
+
+    /// The answer that settled whose the thing is.
+    pub fn answer(&self) -> Option<Reading> {
+        self.answer
+    }
+
+    /// The owners: answered ones, else the model's best set (with the paper's gate, the set of
+    /// [`crate::sharing::owner_set`]), else nobody.
+    pub fn owners(&self) -> OwnerSet {
+        match (self.answer, &self.belief) {
+            (Some(reading), _) => reading.owners,
+            (None, Some(belief)) => belief.owners,
+            (None, None) => OwnerSet::EMPTY,
+        }
+    }
+
+    /// How often a person was asked about the thing.
+    pub fn times_asked(&self) -> u32 {
+        self.times_asked
+    }
+
+    /// Why the model failed on the thing when it was last tried.
+    pub fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+
+    /// BUILD-KNOWN for this thing: the answered owners, else the most probable owner set where it is probable
+    /// enough (also with the paper's gate, because the probability is that set's). A thing that nobody of the
+    /// household owns is known as such.
+    pub fn known(&self) -> Option<Known> {
+        match (self.answer, &self.belief) {
+            (Some(reading), _) => Some(Known { owners: reading.owners, source: KnownSource::Answered }),
+            (None, Some(belief)) if belief.assessment.confidence >= KNOWN_CONFIDENCE => {
+                Some(Known { owners: belief.assessment.owners, source: KnownSource::Inferred })
+            }
+            _ => None,
+        }
+    }
+
+    pub(super) fn related(&self) -> &RelatedObjects {
+        static NONE: RelatedObjects = RelatedObjects::new();
+        self.belief.as_ref().map_or(&NONE, |belief| &belief.inference.related)
+    }
+
+    pub(super) fn was_inferred(&self) -> bool {
+        self.belief.is_some() || self.problem.is_some()
+    }
+
+    pub(super) fn may_be_asked(&self) -> bool {
+        !self.closed_to_questions && self.times_asked < MOST_TIMES_ASKED
+    }
+
+    pub(super) fn close_to_questions(&mut self) {
+        self.times_asked += 1;
+        self.closed_to_questions = true;
+    }
+
+    pub(super) fn apply_inference(&mut self, inference: Inference, settings: &AgentSettings) {
+        let assessment =
+            settings.thresholds.assess(&inference.scores, &inference.distribution, &settings.share);
+        let owners = match settings.gate {
+            Gate::Paper => crate::sharing::owner_set(&inference.scores, &settings.share),
+            Gate::Risk | Gate::Set | Gate::Always | Gate::Never => assessment.owners,
+        };
+        self.belief = Some(Belief { inference, assessment, owners });
+        self.problem = None;
+    }
+
+    /// An earlier belief stays; the reader of the report learns that it could not be renewed.
+    pub(super) fn apply_failure(&mut self, reason: String) {
+        self.problem = Some(reason);
+    }
+
+    pub(super) fn apply_reading(&mut self, reading: Reading) {
+        self.times_asked += 1;
+        if !reading.is_unresolved() {
+            self.answer = Some(reading);
+        }
+    }
+}

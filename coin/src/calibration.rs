@@ -1,0 +1,197 @@
+//! From calibration samples to thresholds, and from thresholds to what is thought of one thing.
+
+use coin_schemas::calibration::{Calibration, NonconformityScore};
+use coin_schemas::household::Score;
+use thiserror::Error;
+
+use crate::conformal::risk::{Outcome, RiskSample, risk_threshold};
+use crate::conformal::{Level, label_set, split};
+use crate::owners::{OwnerSet, OwnerSetDistribution};
+use crate::sharing::{ShareThresholds, detect_share};
+
+/// The name of the model that needs no service: the evidence model behind the chat-model interface.
+pub const EMBEDDED_MODEL: &str = "embedded";
+
+/// Without a calibration a thing is settled where its best owner set has at least this probability.
+pub const UNCALIBRATED_CONFIDENCE: f64 = 0.95;
+
+const EMBEDDED_CALIBRATION: &str = include_str!("../../fixtures/calibrations/embedded.json");
+
+/// The calibration of the embedded model that the program carries.
+///
+/// # Errors
+/// If the file that was compiled in is no calibration.
+pub fn embedded_calibration() -> Result<Calibration, serde_json::Error> {
+    serde_json::from_str(EMBEDDED_CALIBRATION)
+}
+
+/// A thing of a calibration household, scored by the model and with its true owners.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationSample {
+    /// The model's score of every member.
+    pub scores: Vec<Score>,
+    /// The probabilities of owner sets.
+    pub distribution: OwnerSetDistribution,
+    /// The true owners.
+    pub owners: OwnerSet,
+}
+
+/// The levels to calibrate for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Levels {
+    /// Miscoverage α of prediction sets.
+    pub alpha: Level,
+    /// α_cp of the paper's stopping threshold.
+    pub alpha_cp: Level,
+    /// ε: the share of wrong owner sets that is tolerated in the end.
+    pub risk: Level,
+}
+
+/// Why there is no calibration.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum CalibrationError {
+    /// No thing of the calibration households has an owner in its household.
+    #[error("no calibration sample has an owner in the household; give episodes with a truth file")]
+    NoSamples,
+}
+
+/// Computes every threshold on the samples. Things that nobody of the household owns are left out of q_α, whose
+/// prediction set over members could never hold their owner; they count as wrong in q_set and λ̂, and have a
+/// cp_s as every other thing.
+pub fn calibrate(
+    model: &str,
+    samples: &[CalibrationSample],
+    households: usize,
+    levels: Levels,
+    score: NonconformityScore,
+) -> Result<Calibration, CalibrationError> {
+    let nonconformities: Vec<f64> = samples
+        .iter()
+        .filter_map(|sample| split::nonconformity(score, &sample.scores, sample.owners))
+        .collect();
+    if nonconformities.is_empty() {
+        return Err(CalibrationError::NoSamples);
+    }
+    let q_alpha = split::coverage_threshold(&nonconformities, levels.alpha).threshold();
+    let uncertainties: Vec<f64> = samples
+        .iter()
+        .map(|sample| split::uncertainty(&sample.scores, split::prediction_set(&sample.scores, q_alpha)))
+        .collect();
+    let set_nonconformities: Vec<f64> =
+        samples.iter().map(|sample| label_set::nonconformity(&sample.distribution, sample.owners)).collect();
+    let risk_samples: Vec<RiskSample> = samples
+        .iter()
+        .map(|sample| {
+            let (best, confidence) = sample.distribution.best();
+            let outcome = if best == sample.owners { Outcome::Right } else { Outcome::Wrong };
+            RiskSample { confidence, outcome }
+        })
+        .collect();
+    Ok(Calibration {
+        model: model.to_owned(),
+        alpha: levels.alpha.value(),
+        alpha_cp: levels.alpha_cp.value(),
+        risk: levels.risk.value(),
+        score,
+        samples: samples.len(),
+        households,
+        q_alpha,
+        q_cp: split::stopping_threshold(&uncertainties, levels.alpha_cp).threshold(),
+        q_set: label_set::coverage_threshold(&set_nonconformities, levels.alpha).threshold(),
+        lambda: risk_threshold(&risk_samples, levels.risk),
+        created_with: concat!("coin ", env!("CARGO_PKG_VERSION")).to_owned(),
+    })
+}
+
+/// What the gates compare with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Thresholds {
+    /// From a calibration: the guarantees hold.
+    Calibrated {
+        /// Threshold of Γ(o).
+        q_alpha: f64,
+        /// The paper's stopping threshold.
+        q_cp: f64,
+        /// Threshold of the label-set prediction set.
+        q_set: f64,
+        /// Risk control.
+        lambda: f64,
+    },
+    /// There is none for the model: Γ(o) excludes nobody, and [`UNCALIBRATED_CONFIDENCE`] settles a thing.
+    Uncalibrated,
+}
+
+impl From<&Calibration> for Thresholds {
+    fn from(calibration: &Calibration) -> Self {
+        let &Calibration { q_alpha, q_cp, q_set, lambda, .. } = calibration;
+        Self::Calibrated { q_alpha, q_cp, q_set, lambda }
+    }
+}
+
+/// What is thought of one thing that nobody was asked about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assessment {
+    /// The most probable owner set.
+    pub owners: OwnerSet,
+    /// Its probability, conf(o).
+    pub confidence: f64,
+    /// Γ(o).
+    pub prediction_set: OwnerSet,
+    /// cp_s(o).
+    pub uncertainty: f64,
+    /// The number of owner sets that label-set conformal prediction leaves.
+    pub plausible_sets: usize,
+    /// The shared owners of DETECT-SHARE, where it finds any.
+    pub shared_owners: Option<OwnerSet>,
+    /// Whether DETECT-SHARE holds the thing to be shared.
+    pub shared: bool,
+    /// Whether risk control settles the thing without a question (the default gate).
+    pub settled: bool,
+}
+
+impl Thresholds {
+    /// The thresholds of a model by name: the built-in ones of the embedded model, none for any other.
+    pub fn for_model(model: Option<&str>) -> Self {
+        match model {
+            Some(EMBEDDED_MODEL) => embedded_calibration().as_ref().map_or(Self::Uncalibrated, Self::from),
+            _ => Self::Uncalibrated,
+        }
+    }
+
+    /// λ̂, or the fixed confidence where there is no calibration.
+    pub fn lambda(&self) -> f64 {
+        match *self {
+            Self::Calibrated { lambda, .. } => lambda,
+            Self::Uncalibrated => UNCALIBRATED_CONFIDENCE,
+        }
+    }
+
+    /// Everything that the gates ask about one thing.
+    pub fn assess(
+        &self,
+        scores: &[Score],
+        distribution: &OwnerSetDistribution,
+        share: &ShareThresholds,
+    ) -> Assessment {
+        let (q_alpha, q_set) = match *self {
+            Self::Calibrated { q_alpha, q_set, .. } => (q_alpha, q_set),
+            Self::Uncalibrated => (1.0, 1.0),
+        };
+        let (owners, confidence) = distribution.best();
+        let prediction_set = split::prediction_set(scores, q_alpha);
+        let shared_owners = detect_share(scores, share);
+        Assessment {
+            owners,
+            confidence,
+            prediction_set,
+            uncertainty: split::uncertainty(scores, prediction_set),
+            plausible_sets: label_set::prediction_set(distribution, q_set).len(),
+            shared_owners,
+            shared: shared_owners.is_some(),
+            settled: confidence >= self.lambda(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

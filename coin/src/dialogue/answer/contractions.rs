@@ -1,0 +1,57 @@
+//! The words of an answer with short forms written out, each with its place in the text.
+
+use super::vocabulary::CONTRACTIONS;
+use crate::captions::words::{Gap, Word, fold};
+
+/// A word, or one of the words that a short form stands for.
+#[derive(Debug, Clone)]
+pub(super) struct Token {
+    /// Lower case.
+    pub(super) text: String,
+    /// The place of the word in the text.
+    pub(super) word: usize,
+    pub(super) possessive: bool,
+    pub(super) capital: bool,
+    pub(super) gap: Gap,
+}
+
+/// Words whose "'s" means "is".
+const WITH_IS: &[&str] = &["it", "that", "this", "he", "she", "who", "what", "there", "here", "where", "how"];
+
+/// Endings that stand for a word of their own.
+const ENDINGS: &[(&str, &str)] =
+    &[("n't", "not"), ("'m", "am"), ("'re", "are"), ("'ve", "have"), ("'ll", "will"), ("'d", "would")];
+
+pub(super) fn tokens(text: &str, words: &[Word]) -> Vec<Token> {
+    let mut tokens = Vec::with_capacity(words.len());
+    for (place, word) in words.iter().enumerate() {
+        let folded = fold(word.text(text));
+        let mut push = |text: &str, possessive: bool, gap: Gap| {
+            tokens.push(Token { text: text.to_owned(), word: place, possessive, capital: word.capital, gap });
+        };
+        if let Some((_, spelled)) = CONTRACTIONS.iter().find(|(short, _)| *short == folded) {
+            for (index, part) in spelled.split(' ').enumerate() {
+                push(part, false, if index == 0 { word.gap } else { Gap::Space });
+            }
+        } else if word.possessive && WITH_IS.contains(&folded.as_str()) {
+            push(&folded, false, word.gap);
+            push("is", false, Gap::Space);
+        } else if word.possessive && folded == "let" {
+            // "let's see" lets nobody use anything.
+            push("let's", false, word.gap);
+        } else if let Some((stem, ending)) = split_ending(&folded) {
+            push(stem, false, word.gap);
+            push(ending, false, Gap::Space);
+        } else {
+            push(&folded, word.possessive, word.gap);
+        }
+    }
+    tokens
+}
+
+fn split_ending(folded: &str) -> Option<(&str, &'static str)> {
+    ENDINGS
+        .iter()
+        .find_map(|&(ending, meaning)| folded.strip_suffix(ending).map(|stem| (stem, meaning)))
+        .filter(|(stem, _)| !stem.is_empty())
+}

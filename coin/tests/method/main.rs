@@ -1,0 +1,13 @@
+//! The method as other crates see it: known answers, coverage by repetition, and whole runs of the agent.
+#![expect(clippy::unwrap_used, reason = "clippy.toml allows it in test functions, not in what they share")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod algorithm_1;
+mod coverage;
+mod exceptions;
+mod known_answers;
+mod reinference;
+mod run;
+mod run_laws;
