@@ -1,0 +1,143 @@
+//! The home's map: things, where they are and what they look like.
+
+use std::collections::BTreeMap;
+
+use coin_schemas::episode::{EpisodeObject, FEATURE_DIMENSIONS};
+use coin_schemas::household::{ClassLabel, ObjectId, Position};
+use rusqlite::{OptionalExtension, Row};
+
+use super::{Reader, StoreError, Writer};
+
+/// The key of a thing in the store.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectKey(pub(super) i64);
+
+/// A thing of the map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredObject {
+    /// Its key.
+    pub key: ObjectKey,
+    /// Its id.
+    pub id: ObjectId,
+    /// Its class.
+    pub class: ClassLabel,
+    /// Where it is, in metres.
+    pub position: Position,
+    /// The room that it is in.
+    pub room: Option<String>,
+}
+
+impl StoredObject {
+    fn from_row(row: &Row<'_>) -> Result<Self, StoreError> {
+        Ok(Self {
+            key: ObjectKey(row.get(0)?),
+            id: ObjectId::new(row.get::<_, String>(1)?)?,
+            class: ClassLabel::new(row.get::<_, String>(2)?)?,
+            position: Position::new([row.get(3)?, row.get(4)?, row.get(5)?])?,
+            room: row.get(6)?,
+        })
+    }
+}
+
+impl Reader<'_> {
+    /// The thing of this id.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub fn object(&self, id: &str) -> Result<Option<StoredObject>, StoreError> {
+        let mut statement = self
+            .transaction
+            .prepare_cached("SELECT object_key, id, class, x, y, z, room FROM objects WHERE id = ?1")?;
+        let mut rows = statement.query([id])?;
+        rows.next()?.map(StoredObject::from_row).transpose()
+    }
+
+    /// The key of the thing of this id.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub fn object_key(&self, id: &str) -> Result<Option<ObjectKey>, StoreError> {
+        let mut statement =
+            self.transaction.prepare_cached("SELECT object_key FROM objects WHERE id = ?1")?;
+        Ok(statement.query_row([id], |row| row.get(0)).optional()?.map(ObjectKey))
+    }
+
+    /// All things, by id.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub fn objects(&self) -> Result<Vec<StoredObject>, StoreError> {
+        let mut statement = self
+            .transaction
+            .prepare_cached("SELECT object_key, id, class, x, y, z, room FROM objects ORDER BY id")?;
+        let mut rows = statement.query([])?;
+        let mut objects = Vec::new();
+        while let Some(row) = rows.next()? {
+            objects.push(StoredObject::from_row(row)?);
+        }
+        Ok(objects)
+    }
+
+    /// The visual feature of a thing, as it was handed in.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub fn feature(&self, object: ObjectKey) -> Result<Option<Vec<f32>>, StoreError> {
+        let mut statement =
+            self.transaction.prepare_cached("SELECT vector FROM features WHERE object_key = ?1")?;
+        let blob: Option<Vec<u8>> = statement.query_row([object.0], |row| row.get(0)).optional()?;
+        Ok(blob.as_deref().map(from_bytes))
+    }
+
+    /// The visual features of all things that have one, as they were handed in.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub fn features(&self) -> Result<BTreeMap<ObjectKey, Vec<f32>>, StoreError> {
+        let mut statement = self.transaction.prepare_cached("SELECT object_key, vector FROM features")?;
+        let mut rows = statement.query([])?;
+        let mut features = BTreeMap::new();
+        while let Some(row) = rows.next()? {
+            let blob = row.get_ref(1)?.as_blob().map_err(|source| StoreError::damaged(source.to_string()))?;
+            features.insert(ObjectKey(row.get(0)?), from_bytes(blob));
+        }
+        Ok(features)
+    }
+}
+
+impl Writer<'_> {
+    /// Adds a thing that is not in the map yet.
+    ///
+    /// # Errors
+    /// Failures of the database, an id that is taken among them.
+    pub fn add_object(&self, object: &EpisodeObject) -> Result<ObjectKey, StoreError> {
+        let [x, y, z] = object.position.metres();
+        self.transaction
+            .prepare_cached("INSERT INTO objects (id, class, x, y, z, room) VALUES (?1, ?2, ?3, ?4, ?5, ?6)")?
+            .execute((object.id.as_str(), object.class.as_str(), x, y, z, &object.room))?;
+        Ok(ObjectKey(self.transaction.last_insert_rowid()))
+    }
+
+    /// Stores what a thing looks like.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub fn put_feature(
+        &self,
+        object: ObjectKey,
+        feature: &[f32; FEATURE_DIMENSIONS],
+    ) -> Result<(), StoreError> {
+        let bytes: Vec<u8> = feature.iter().flat_map(|component| component.to_le_bytes()).collect();
+        self.transaction
+            .prepare_cached(
+                "INSERT INTO features (object_key, vector) VALUES (?1, ?2)
+                 ON CONFLICT (object_key) DO UPDATE SET vector = excluded.vector",
+            )?
+            .execute((object.0, bytes))?;
+        Ok(())
+    }
+}
+
+fn from_bytes(bytes: &[u8]) -> Vec<f32> {
+    bytes.as_chunks::<4>().0.iter().map(|&component| f32::from_le_bytes(component)).collect()
+}

@@ -1,0 +1,35 @@
+//! `list_users`: who lives in the home.
+
+use coin_schemas::tools::{ListUsers, ListUsersResult, ListedUser};
+
+use super::{Effect, Tool, ToolError};
+use crate::store::{Household, Store};
+
+pub(super) struct ListUsersTool;
+
+impl Tool for ListUsersTool {
+    const NAME: &'static str = "list_users";
+    const TITLE: &'static str = "Members of the household";
+    const DESCRIPTION: &'static str = "The members of the household with their roles and occupations: all \
+        candidates for an owner. Other tools take their names exactly as they stand here.";
+    const EXAMPLE: &'static str = "{}";
+    const EFFECT: Effect = Effect::Reads;
+
+    type Arguments = ListUsers;
+    type Output = ListUsersResult;
+
+    fn call(store: &Store, _: ListUsers) -> Result<ListUsersResult, ToolError> {
+        let household = store.read(|reader| Ok::<_, ToolError>(reader.household()?))?;
+        let users = household.as_ref().map(Household::roster).into_iter().flat_map(|roster| {
+            roster.indices().map(|user| {
+                let background = roster.background(user);
+                ListedUser {
+                    name: roster.name(user).clone(),
+                    role: background.role.clone(),
+                    occupation: background.occupation.clone(),
+                }
+            })
+        });
+        Ok(ListUsersResult { users: users.collect() })
+    }
+}

@@ -1,0 +1,29 @@
+mod arguments;
+mod definitions;
+mod reading;
+mod recording;
+
+use rmcp::model::JsonObject;
+use serde_json::Value;
+
+use super::{Registry, ToolError, ToolSelection};
+use crate::store::{Access, Store};
+
+fn registry() -> Registry {
+    Registry::new(&ToolSelection::all(), Access::ReadWrite)
+}
+
+fn call(store: &Store, tool: &str, arguments: Value) -> Result<Value, ToolError> {
+    let arguments: JsonObject = serde_json::from_value(arguments).unwrap();
+    registry().get(tool).unwrap().call(store, arguments)
+}
+
+/// The result of a call that is in order.
+fn done(store: &Store, tool: &str, arguments: Value) -> Value {
+    call(store, tool, arguments).unwrap()
+}
+
+/// The message of a call that is not.
+fn refused(store: &Store, tool: &str, arguments: Value) -> String {
+    call(store, tool, arguments).expect_err("the call was accepted").to_string()
+}
