@@ -1,0 +1,206 @@
+//! The command line: what may be typed, and what it means.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use coin::calibration::{EMBEDDED_MODEL, Levels};
+use coin::conformal::{InvalidLevel, Level};
+use coin_schemas::calibration::NonconformityScore;
+use coin_schemas::report::Gate;
+
+use crate::client::ServerAddress;
+use crate::generate::GenerateArguments;
+use crate::run::Answers;
+
+const EXAMPLES: &str = "\
+Examples:
+  host --episode fixtures/episodes/small-house
+      Run a week of a home with a simulated person; no key, no service.
+  host --episode HOME --answers terminal --db home.db
+      Answer yourself, and keep what was learnt.
+  host --episode HOME --json > report.json
+      The report, and it alone, on standard output.
+  host --episode HOME --server 'coin-server --db home.db'
+      Use a server in its own process.
+  host generate routine --protocol week --seed 7 --out HOME
+      Make a household of your own.
+
+Exit status: 0 done; 1 failed; 2 wrong use or a refused file.";
+
+/// Whose is this? Infers who owns the things of a home, and asks a person only when that is worth a question
+#[derive(Debug, Parser)]
+#[command(name = "host", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct CommandLine {
+    /// What to do instead of running an episode.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// What to run.
+    #[command(flatten)]
+    pub run: RunArguments,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compute thresholds on homes with known owners, for use on other homes
+    Calibrate(CalibrateArguments),
+    /// Make households with known owners
+    #[command(subcommand)]
+    Generate(GenerateCommand),
+}
+
+/// What can be generated.
+#[derive(Debug, Subcommand)]
+pub enum GenerateCommand {
+    /// Households that live by our own routines
+    Routine(GenerateArguments),
+}
+
+/// Arguments of `host --episode`.
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// Folder of the episode (episode.json and the files that it names)
+    #[arg(long, value_name = "DIR", required = true)]
+    pub episode: Option<PathBuf>,
+    /// Keep the database in this file; answers in it are not asked for again [default: in memory]
+    #[arg(long, value_name = "FILE")]
+    pub db: Option<PathBuf>,
+    /// Where the tool server is: in-process, a command, or a URL
+    #[arg(long, value_name = "in-process|CMD|URL", default_value = "in-process")]
+    pub server: ServerAddress,
+    /// The model that scores, words and reads
+    #[arg(long, value_name = "NAME", default_value = EMBEDDED_MODEL)]
+    pub model: ModelName,
+    /// Which rule decides what is asked
+    #[arg(long, value_enum, default_value_t = GateArgument::Risk)]
+    pub gate: GateArgument,
+    /// Thresholds of the model, from `host calibrate` [default: those that come with the embedded model]
+    #[arg(long, value_name = "FILE")]
+    pub calibration: Option<PathBuf>,
+    /// Who answers: simulated, terminal, or a file of answers (JSON Lines)
+    #[arg(long, value_name = "simulated|terminal|FILE", default_value = "simulated")]
+    pub answers: Answers,
+    /// Ask at most this often [default: once for each thing]
+    #[arg(long, value_name = "N")]
+    pub max_questions: Option<usize>,
+    /// Seed of the simulated person
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Write the report to this file (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+    /// Write what happens to this file as it happens (JSON Lines)
+    #[arg(long, value_name = "FILE")]
+    pub events: Option<PathBuf>,
+    /// Print the report as JSON instead of the tables
+    #[arg(long)]
+    pub json: bool,
+    /// Say nothing while working
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `host calibrate`.
+#[derive(Debug, Args)]
+pub struct CalibrateArguments {
+    /// Folders of episodes with a truth file; homes that will be judged do not belong here
+    #[arg(long, value_name = "DIR", required = true, num_args = 1..)]
+    pub episode: Vec<PathBuf>,
+    /// Write the calibration to this file
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// How often a prediction set may miss
+    #[arg(long, value_name = "LEVEL", default_value = "0.2", value_parser = level)]
+    pub alpha: Level,
+    /// Level of the paper's stopping threshold
+    #[arg(long, value_name = "LEVEL", default_value = "0.05", value_parser = level)]
+    pub alpha_cp: Level,
+    /// Share of wrong owner sets that is tolerated in the end
+    #[arg(long, value_name = "LEVEL", default_value = "0.012", value_parser = level)]
+    pub risk: Level,
+    /// What a prediction set is to hold: at least one true owner (the paper's score), or all of them
+    #[arg(long, value_enum, default_value_t = ScoreArgument::AllOwners)]
+    pub score: ScoreArgument,
+    /// The model to calibrate
+    #[arg(long, value_name = "NAME", default_value = EMBEDDED_MODEL)]
+    pub model: ModelName,
+    /// Say nothing while working
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+impl CalibrateArguments {
+    /// The three levels.
+    pub fn levels(&self) -> Levels {
+        Levels { alpha: self.alpha, alpha_cp: self.alpha_cp, risk: self.risk }
+    }
+}
+
+fn level(text: &str) -> Result<Level, String> {
+    let value: f64 = text.parse().map_err(|_| format!("{text:?} is not a number"))?;
+    Level::new(value).map_err(|error: InvalidLevel| error.to_string())
+}
+
+/// A model that this version can drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModelName {
+    /// The evidence model, which needs no service.
+    Embedded,
+}
+
+impl std::str::FromStr for ModelName {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            EMBEDDED_MODEL => Ok(Self::Embedded),
+            _ => Err(format!("this version drives the model {EMBEDDED_MODEL:?} and no other")),
+        }
+    }
+}
+
+/// A gate as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum GateArgument {
+    /// Keep the share of wrong owner sets under the calibrated risk (conformal risk control)
+    Risk,
+    /// Ask where more than one owner set is plausible (conformal prediction over owner sets)
+    Set,
+    /// The paper's: cp_s against q_cp
+    Paper,
+    /// Ask about everything
+    Always,
+    /// Ask nothing
+    Never,
+}
+
+impl From<GateArgument> for Gate {
+    fn from(argument: GateArgument) -> Self {
+        match argument {
+            GateArgument::Risk => Self::Risk,
+            GateArgument::Set => Self::Set,
+            GateArgument::Paper => Self::Paper,
+            GateArgument::Always => Self::Always,
+            GateArgument::Never => Self::Never,
+        }
+    }
+}
+
+/// A nonconformity score as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum ScoreArgument {
+    /// At least one true owner
+    AnyOwner,
+    /// All true owners
+    AllOwners,
+}
+
+impl From<ScoreArgument> for NonconformityScore {
+    fn from(argument: ScoreArgument) -> Self {
+        match argument {
+            ScoreArgument::AnyOwner => Self::AnyOwner,
+            ScoreArgument::AllOwners => Self::AllOwners,
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! `host generate routine`: what the command takes and does.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::Args;
+
+use super::{Protocol, RoutineSettings, generate, write};
+
+/// Writes homes of our own making: people with their week, their things, what was seen of it, and the truth.
+#[derive(Debug, Clone, PartialEq, Eq, Args)]
+pub struct GenerateArguments {
+    /// The kind of home
+    #[arg(long, value_enum, default_value_t = Protocol::Week)]
+    pub protocol: Protocol,
+    /// The seed: the same protocol and seed give the same files, byte for byte
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// How many homes to write; with more than one, each goes to OUT/PROTOCOL-SEED for SEED, SEED+1, …
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub count: u64,
+    /// The folder to write to: new, empty, or an episode, which is replaced
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Writes the homes. A failure names the folder, and the homes before it are there.
+pub fn run(arguments: &GenerateArguments) -> anyhow::Result<()> {
+    for step in 0..arguments.count {
+        let seed = arguments
+            .seed
+            .checked_add(step)
+            .context("the seeds run past the largest one; give a smaller --seed or --count")?;
+        let episode = generate(&RoutineSettings { seed, protocol: arguments.protocol });
+        let folder = match arguments.count {
+            1 => arguments.out.clone(),
+            _ => arguments.out.join(&episode.episode.name),
+        };
+        write(&episode, &folder)?;
+        tracing::info!(
+            folder = %folder.display(),
+            objects = episode.episode.objects.len(),
+            captions = episode.captions.len(),
+            "wrote an episode"
+        );
+    }
+    Ok(())
+}

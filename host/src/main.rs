@@ -1,0 +1,174 @@
+//! The program `host`: reads the command line, runs what it names, and ends with an exit status.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use coin_host::calibrate::{CalibrateSettings, calibrate_on, read_calibration};
+use coin_host::cli::{CalibrateArguments, Command, CommandLine, GenerateCommand, ModelName, RunArguments};
+use coin_host::generate;
+use coin_host::model::ChatModel;
+use coin_host::model::embedded::EmbeddedModel;
+use coin_host::observer::Chronicle;
+use coin_host::output::{EventLog, Narration, Printer, Progress, ResultFormat};
+use coin_host::person::PersonKind;
+use coin_host::run::{Answers, RunSettings, run_episode};
+use tempfile::NamedTempFile;
+use tracing_subscriber::EnvFilter;
+
+/// Why the program ends without its result.
+enum Failure {
+    /// What was given is refused; the same call will fail again. Exit status 2.
+    Refused(String),
+    /// Something failed on the way. Exit status 1.
+    Failed(String),
+}
+
+fn main() -> ExitCode {
+    let arguments = CommandLine::parse();
+    tracing_subscriber::fmt()
+        .with_writer(std::io::stderr)
+        .with_ansi(false)
+        .with_env_filter(EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("warn")))
+        .init();
+    let outcome = match &arguments.command {
+        None => run(&arguments.run),
+        Some(Command::Calibrate(arguments)) => calibrate(arguments),
+        Some(Command::Generate(GenerateCommand::Routine(arguments))) => {
+            generate::run(arguments).map_err(|error| Failure::Refused(format!("{error:#}")))
+        }
+    };
+    let printer = Printer::new(ResultFormat::Text, Progress::Told);
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Refused(reason)) => {
+            printer.failure(&reason);
+            ExitCode::from(2)
+        }
+        Err(Failure::Failed(reason)) => {
+            printer.failure(&reason);
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// Classifies an error by whether what was given is at fault.
+fn failure(is_refusal: bool, error: &impl std::error::Error) -> Failure {
+    if is_refusal { Failure::Refused(error.to_string()) } else { Failure::Failed(error.to_string()) }
+}
+
+fn runtime() -> Result<tokio::runtime::Runtime, Failure> {
+    tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .map_err(|error| Failure::Failed(format!("the runtime does not start: {error}")))
+}
+
+fn model(name: ModelName) -> Box<dyn ChatModel> {
+    match name {
+        ModelName::Embedded => Box::new(EmbeddedModel::default()),
+    }
+}
+
+fn run(arguments: &RunArguments) -> Result<(), Failure> {
+    let episode = arguments.episode.clone().ok_or_else(|| {
+        Failure::Refused("no episode is given; name its folder with --episode DIR".to_owned())
+    })?;
+    let calibration = match &arguments.calibration {
+        Some(file) => Some(read_calibration(file).map_err(|error| failure(true, &error))?),
+        None => None,
+    };
+    // The files are opened before the work begins, so that an hour's work does not end at a misspelt folder.
+    let log = match &arguments.events {
+        Some(file) => Some(EventLog::create(file).map_err(|error| failure(true, &error))?),
+        None => None,
+    };
+    let report_file = arguments.report.as_deref().map(OutputFile::create).transpose()?;
+    let settings = RunSettings {
+        episode,
+        db: arguments.db.clone(),
+        server: arguments.server.clone(),
+        gate: arguments.gate.into(),
+        calibration,
+        answers: arguments.answers.clone(),
+        max_questions: arguments.max_questions,
+        seed: arguments.seed,
+    };
+    let format = if arguments.json { ResultFormat::Json } else { ResultFormat::Text };
+    let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
+    let printer = Printer::new(format, progress);
+    let person = match settings.answers {
+        Answers::Simulated => PersonKind::Simulated,
+        Answers::Terminal => PersonKind::Terminal,
+        Answers::Scripted(_) => PersonKind::Scripted,
+    };
+    let mut chronicle = Chronicle::new(log, printer.narration(person));
+    let model = model(arguments.model);
+    let result = runtime()?
+        .block_on(run_episode(&settings, model.as_ref(), &mut chronicle))
+        .map_err(|error| failure(error.is_refusal(), &error))?;
+    if let Some(file) = report_file {
+        file.write_json(&result.report)?;
+    }
+    printer
+        .report(&result.report, &result.users)
+        .map_err(|error| Failure::Failed(format!("standard output takes no more: {error}")))
+}
+
+fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
+    let out = OutputFile::create(&arguments.out)?;
+    let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
+    let printer = Printer::new(ResultFormat::Text, progress);
+    let settings = CalibrateSettings {
+        episodes: arguments.episode.clone(),
+        levels: arguments.levels(),
+        score: arguments.score.into(),
+    };
+    let model = model(arguments.model);
+    let mut chronicle = Chronicle::new(None, Narration::silent());
+    let calibration = runtime()?
+        .block_on(calibrate_on(&settings, model.as_ref(), &mut chronicle))
+        .map_err(|error| failure(error.is_refusal(), &error))?;
+    out.write_json(&calibration)?;
+    printer.progress(&format!(
+        "{}: {} things of {} homes; settled without a question from {:.3} on.",
+        arguments.out.display(),
+        calibration.samples,
+        calibration.households,
+        calibration.lambda,
+    ));
+    Ok(())
+}
+
+/// A file that appears whole or not at all.
+struct OutputFile {
+    path: PathBuf,
+    partial: NamedTempFile,
+}
+
+impl OutputFile {
+    fn create(path: &Path) -> Result<Self, Failure> {
+        let refused = |reason: String| Failure::Refused(format!("cannot write {}: {reason}", path.display()));
+        if path.is_dir() {
+            return Err(refused("it is a folder; name a file".to_owned()));
+        }
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let partial = NamedTempFile::new_in(folder).map_err(|error| refused(error.to_string()))?;
+        Ok(Self { path: path.to_owned(), partial })
+    }
+
+    fn write_json(mut self, value: &impl serde::Serialize) -> Result<(), Failure> {
+        let failed =
+            |reason: String| Failure::Failed(format!("cannot write {}: {reason}", self.path.display()));
+        let mut json = serde_json::to_string_pretty(value).map_err(|error| failed(error.to_string()))?;
+        json.push('\n');
+        self.partial.write_all(json.as_bytes()).map_err(|error| failed(error.to_string()))?;
+        self.partial.persist(&self.path).map_err(|error| failed(error.error.to_string()))?;
+        Ok(())
+    }
+}

@@ -1,0 +1,15 @@
+//! What a person sees: the story on stderr while it happens, the result on stdout, the event log in a file.
+
+pub mod events;
+mod layout;
+pub mod narration;
+mod plain_text;
+pub mod printer;
+pub mod style;
+pub mod table;
+
+pub use events::{EventLog, EventLogError};
+pub use narration::{Changed, Narration};
+pub use plain_text::plain_text;
+pub use printer::{Printer, Progress, ResultFormat};
+pub use style::{Colour, Style};

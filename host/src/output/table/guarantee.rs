@@ -1,0 +1,99 @@
+//! What the thresholds of a run promise, in one or two sentences that promise no more than the method does.
+
+use coin_schemas::calibration::{Calibration, NonconformityScore};
+use coin_schemas::report::{Gate, Report, Stopped};
+
+use crate::output::layout::{count, percent};
+use crate::output::plain_text;
+
+/// What may be relied on, and from what data that follows.
+pub(super) fn guarantee(report: &Report) -> String {
+    let Some(calibration) = &report.calibration else { return no_guarantee(report) };
+    if calibration.samples == 0 {
+        return "none: the calibration was made from no data. Make one with host calibrate.".to_owned();
+    }
+    let promise = match report.gate {
+        Gate::Risk => risk(calibration),
+        Gate::Set => format!(
+            "with a probability of {} the true owner set of a thing is among its plausible ones, and \
+             everything with more than one was up for a question",
+            share(1.0 - calibration.alpha)
+        ),
+        Gate::Paper => format!(
+            "{}; everything whose cp_s is above {:.3} was up for a question",
+            prediction_sets(calibration),
+            calibration.q_cp
+        ),
+        Gate::Always => return "none is needed: everything was up for a question.".to_owned(),
+        Gate::Never => format!("nothing was asked; {}", prediction_sets(calibration)),
+    };
+    let beyond = match (report.gate, report.stopped) {
+        (Gate::Never, _) | (_, Stopped::Confident) => "",
+        (_, Stopped::MaxQuestions | Stopped::NothingLeftToAsk) => {
+            " It does not cover what was still up for a question in the end."
+        }
+    };
+    format!("{promise} ({}).{beyond}", made_from(calibration))
+}
+
+fn risk(calibration: &Calibration) -> String {
+    let risk = share(calibration.risk);
+    if calibration.lambda > 1.0 {
+        return format!("no threshold keeps wrong owner sets at {risk}, so everything was up for a question");
+    }
+    format!(
+        "things at least {} sure are settled without a question, and at most {risk} of all owner sets are \
+         expected to be wrong",
+        percent(calibration.lambda)
+    )
+}
+
+fn prediction_sets(calibration: &Calibration) -> String {
+    let whom = match calibration.score {
+        NonconformityScore::AnyOwner => "at least one true owner",
+        NonconformityScore::AllOwners => "all true owners",
+    };
+    format!(
+        "with a probability of {} the plausible owners of a thing include {whom}",
+        share(1.0 - calibration.alpha)
+    )
+}
+
+fn made_from(calibration: &Calibration) -> String {
+    format!(
+        "calibrated on {} of {}",
+        count(calibration.samples as u64, "thing", "things"),
+        count(calibration.households as u64, "other home", "other homes"),
+    )
+}
+
+fn no_guarantee(report: &Report) -> String {
+    let model = plain_text(&report.model);
+    let from = percent(coin::calibration::UNCALIBRATED_CONFIDENCE);
+    format!(
+        "none: there is no calibration for the model {model}, so things at least {from} sure are settled \
+         without knowing how often that is wrong. Make one: host calibrate --model {model} --episode DIR… --out FILE"
+    )
+}
+
+/// A share in percent, with as many decimals as it needs and at most two.
+fn share(share: f64) -> String {
+    let percent = format!("{:.2}", share * 100.0);
+    format!("{} %", percent.trim_end_matches('0').trim_end_matches('.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use rstest::rstest;
+
+    #[rstest]
+    #[case(0.012, "1.2 %")]
+    #[case(1.0 - 0.2, "80 %")]
+    #[case(0.0, "0 %")]
+    #[case(0.1, "10 %")]
+    #[case(1.0, "100 %")]
+    #[case(0.0005, "0.05 %")]
+    fn shares_have_no_idle_decimals(#[case] share: f64, #[case] shown: &str) {
+        assert_eq!(super::share(share), shown);
+    }
+}

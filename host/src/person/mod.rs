@@ -1,0 +1,102 @@
+//! Whoever answers the agent's questions: a simulation that knows the truth, somebody at the terminal, or a file.
+//!
+//! A [`Person`] hears a question and says something in plain language, or declines, or is not there any more.
+//! What the words mean is not decided here: the answer goes to the model that reads it.
+
+pub mod scripted;
+pub mod simulated;
+pub mod terminal;
+
+use std::fmt;
+
+use async_trait::async_trait;
+use coin_schemas::household::UserName;
+use coin_schemas::model::TaskObject;
+use thiserror::Error;
+
+pub use scripted::{ScriptError, ScriptedPerson};
+pub use simulated::SimulatedPerson;
+pub use terminal::TerminalPerson;
+
+/// A question as it is put to a person.
+#[derive(Debug, Clone, Copy)]
+pub struct PutQuestion<'a> {
+    /// The number of the question, from 1.
+    pub step: usize,
+    /// The thing that it is about.
+    pub object: &'a TaskObject,
+    /// The question itself.
+    pub question: &'a str,
+    /// The members of the household, the likeliest owner first.
+    pub candidates: &'a [UserName],
+    /// How often the same thing has been asked about before.
+    pub times_asked: u32,
+}
+
+/// What became of a question.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Response {
+    /// Somebody answered.
+    Said {
+        /// The answer as it was given.
+        answer: String,
+        /// Who gave it, where known, so that "mine" has a meaning.
+        answered_by: Option<UserName>,
+    },
+    /// Somebody heard the question and would not answer it. Other questions may still be put.
+    Declined,
+    /// There is nobody left who could answer anything.
+    NobodyLeft,
+}
+
+/// What kind of person answers; a report names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PersonKind {
+    /// A simulation that knows the truth of the episode.
+    Simulated,
+    /// Somebody at the terminal.
+    Terminal,
+    /// A file of prepared answers.
+    Scripted,
+}
+
+impl PersonKind {
+    /// The word that reports use.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Simulated => "simulated",
+            Self::Terminal => "terminal",
+            Self::Scripted => "scripted",
+        }
+    }
+}
+
+impl fmt::Display for PersonKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.as_str())
+    }
+}
+
+/// Why a question could not be put.
+#[derive(Debug, Error)]
+pub enum PersonError {
+    /// The prompt could not be shown.
+    #[error("the question could not be shown at the terminal: {0}")]
+    Show(#[source] std::io::Error),
+    /// The answer could not be read.
+    #[error("the answer could not be read from standard input: {0}")]
+    Read(#[source] std::io::Error),
+}
+
+/// Whoever answers questions.
+#[async_trait]
+pub trait Person: Send {
+    /// What kind of person this is.
+    fn kind(&self) -> PersonKind;
+
+    /// Puts a question and waits for what becomes of it.
+    ///
+    /// # Errors
+    /// If the way to the person is broken. That nobody answers is no error, but a [`Response`].
+    async fn ask(&mut self, question: &PutQuestion<'_>) -> Result<Response, PersonError>;
+}
