@@ -1,0 +1,58 @@
+//! Figures that the project promises. They take long and need optimised programs and a quiet machine, so they run
+//! only with `COIN_SLOW_TESTS=1 cargo test --release -p coin-tests --test performance -- --nocapture
+//! --test-threads=1`, and print what they measured.
+
+mod calls;
+mod history;
+mod pipe;
+mod writing;
+
+use std::time::{Duration, Instant};
+
+use coin_tests::{Program, is_slow_run, small_house};
+
+/// Whether `name` is to be measured. An unoptimised program would be measured in vain.
+fn is_wanted(name: &str) -> bool {
+    if cfg!(debug_assertions) {
+        println!("{name}: skipped; figures are taken with --release");
+        return false;
+    }
+    is_slow_run(name)
+}
+
+fn milliseconds(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
+
+fn microseconds(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e6
+}
+
+/// The value below which `share` of the durations lie.
+fn quantile(durations: &mut [Duration], share: f64) -> Duration {
+    assert!(!durations.is_empty());
+    durations.sort_unstable();
+    durations[((durations.len() - 1) as f64 * share).round() as usize]
+}
+
+fn median(durations: &mut [Duration]) -> Duration {
+    quantile(durations, 0.5)
+}
+
+#[test]
+fn a_small_house_takes_less_than_a_second() {
+    if !is_wanted("small-house") {
+        return;
+    }
+    let mut durations: Vec<Duration> = (0..5)
+        .map(|_| {
+            let program = Program::new("host").arg("--episode").arg(small_house());
+            let started = Instant::now();
+            program.run().expect_code(0);
+            started.elapsed()
+        })
+        .collect();
+    let typical = median(&mut durations);
+    println!("small-house: {:.0} ms from start to end (median of 5)", milliseconds(typical));
+    assert!(typical < Duration::from_secs(1), "it took {typical:?}");
+}
