@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde_json::Value;
 
-use crate::{calibration, episode, events, model, report, tools};
+use crate::{calibration, episode, events, experiment, model, report, tools};
 
 fn schema_of<T: JsonSchema>() -> Value {
     let mut schema = SchemaGenerator::from(SchemaSettings::draft2020_12()).into_root_schema_for::<T>();
@@ -32,6 +32,7 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("truth.schema.json", schema_of::<episode::Truth>()),
         ("calibration.schema.json", schema_of::<calibration::Calibration>()),
         ("report.schema.json", schema_of::<report::Report>()),
+        ("experiment-results.schema.json", schema_of::<experiment::ExperimentResults>()),
         ("log-event.schema.json", schema_of::<events::LogEvent>()),
         ("task.schema.json", schema_of::<model::Task>()),
         ("ownership-reply.schema.json", schema_of::<model::OwnershipReply>()),

@@ -8,6 +8,7 @@ pub mod calibration;
 pub mod catalogue;
 pub mod episode;
 pub mod events;
+pub mod experiment;
 pub mod household;
 pub mod model;
 pub mod report;
