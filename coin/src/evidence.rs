@@ -3,11 +3,12 @@
 //!
 //! A session is one decision to use a thing. An owner set S of k of n members explains the session counts c by a
 //! borrow rate (the share of sessions of non-owners, integrated out under a Beta prior) and an even split among
-//! the owners (a Dirichlet–multinomial). Two terms of the prior look elsewhere: how many owners things have, and
-//! the answered owners of near things and look-alikes.
+//! the owners (a Dirichlet–multinomial). Three terms of the prior look elsewhere: how many owners things have, what
+//! common sense expects of the class, and the answered owners of near things and look-alikes.
 
 use libm::{lgamma, log};
 
+use crate::common_sense::Expectation;
 use crate::owners::{OwnerSet, OwnerSetDistribution, candidate_sets};
 
 /// The constants of the model. The defaults were fixed on generated development households before any household
@@ -29,6 +30,9 @@ pub struct EvidenceParameters {
     pub place: f64,
     /// The looks term: the same for a thing that looks exactly alike, also below 1. 0 switches the term off.
     pub looks: f64,
+    /// The class term: how probable it is that the thing follows what common sense expects of its class in this
+    /// household. 0 switches the term off.
+    pub common_sense: f64,
 }
 
 impl Default for EvidenceParameters {
@@ -41,6 +45,7 @@ impl Default for EvidenceParameters {
             prior_everyone: 0.25,
             place: 0.05,
             looks: 0.50,
+            common_sense: 0.10,
         }
     }
 }
@@ -106,6 +111,28 @@ impl EvidenceParameters {
     }
 }
 
+/// What is expected of an owner set: by its size, and within a size in proportion to how well its members are
+/// suited together.
+fn expected(expectation: &Expectation, set: OwnerSet, sizes_between: usize, suited: &[f64]) -> f64 {
+    let members = expectation.suitability.len();
+    let between = 1.0 - expectation.single - expectation.everyone;
+    let of_size = match set.len() {
+        size if size == members => expectation.everyone,
+        1 => expectation.single,
+        _ => between / sizes_between as f64,
+    };
+    let total = match (members, sizes_between) {
+        (1, _) => return 1.0,
+        (_, 0) => expectation.single + expectation.everyone,
+        _ => 1.0,
+    };
+    of_size / total * suitability(expectation, set) / suited[set.len()]
+}
+
+fn suitability(expectation: &Expectation, set: OwnerSet) -> f64 {
+    set.iter().filter_map(|user| expectation.suitability.get(user.place())).product()
+}
+
 fn log_beta(a: f64, b: f64) -> f64 {
     lgamma(a) + lgamma(b) - lgamma(a + b)
 }
@@ -138,7 +165,10 @@ pub fn log_likelihood(sessions: &[u64], owners: OwnerSet, parameters: &EvidenceP
     log_probability
 }
 
-/// p(S | c, relatives) over the candidate owner sets of a household of `sessions.len()` members.
+/// p(S | c, class, relatives) over the candidate owner sets of a household of `sessions.len()` members.
+///
+/// Without relatives the prior of S is `(1 − w)·π(S) + w·e(S)`, where e is what common sense expects of the class and
+/// w the weight of that term; w is 0 where nothing is expected.
 ///
 /// The relatives enter the prior as a mixture: with probability 1 − ∏(1 − ρ_i) the thing has the owners of one of
 /// its relatives (each in proportion to its coupling ρ_i), else those of π. A mixture keeps a crowd of
@@ -146,6 +176,7 @@ pub fn log_likelihood(sessions: &[u64], owners: OwnerSet, parameters: &EvidenceP
 /// are no candidate set, such as somebody outside the household, say nothing.
 pub fn posterior(
     sessions: &[u64],
+    expectation: Option<&Expectation>,
     relatives: &[KnownRelative],
     parameters: &EvidenceParameters,
 ) -> OwnerSetDistribution {
@@ -154,6 +185,12 @@ pub fn posterior(
     let sets_of_size = |size: usize| sets.iter().filter(|set| set.len() == size).count() as f64;
     let size_counts: Vec<f64> = (0..=members).map(sets_of_size).collect();
     let sizes_between = (2..members).filter(|&size| size_counts[size] > 0.0).count();
+
+    let expectation = expectation.filter(|expectation| expectation.suitability.len() == members);
+    let mut suited = vec![0.0; members + 1];
+    for &set in &sets {
+        suited[set.len()] += expectation.map_or(0.0, |expectation| suitability(expectation, set));
+    }
 
     let couplings: Vec<(OwnerSet, f64)> = relatives
         .iter()
@@ -164,7 +201,15 @@ pub fn posterior(
     let coupling_sum: f64 = couplings.iter().map(|&(_, coupling)| coupling).sum();
 
     OwnerSetDistribution::from_log_weights(sets.iter().map(|&set| {
-        let own = parameters.log_prior(set.len(), members, sizes_between, size_counts[set.len()]);
+        let by_size = parameters.log_prior(set.len(), members, sizes_between, size_counts[set.len()]);
+        let own = match expectation {
+            Some(expectation) => {
+                let weight = parameters.common_sense;
+                let by_class = expected(expectation, set, sizes_between, &suited);
+                log((1.0 - weight) * libm::exp(by_size) + weight * by_class)
+            }
+            None => by_size,
+        };
         let shared: f64 =
             couplings.iter().filter(|&&(owners, _)| owners == set).map(|&(_, coupling)| coupling).sum();
         let prior = if coupling_sum > 0.0 {

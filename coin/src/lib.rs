@@ -8,6 +8,7 @@
 pub mod agent;
 pub mod calibration;
 pub mod captions;
+pub mod common_sense;
 pub mod conformal;
 pub mod dialogue;
 pub mod evidence;

@@ -175,7 +175,7 @@ async fn score_home(
         thresholds: Thresholds::Uncalibrated,
         share: ShareThresholds::default(),
         max_questions: 0,
-        reinference: Reinference::ChangedContext,
+        reinference: Reinference::AnsweredContext,
     };
     let (outcome, _) = drive(&home, agent_settings, model, &mut Nobody, observer).await?;
     let samples = owners

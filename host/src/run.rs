@@ -157,7 +157,7 @@ pub async fn run_episode(
         thresholds: calibration.as_ref().map_or(Thresholds::Uncalibrated, Thresholds::from),
         share: ShareThresholds::default(),
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
-        reinference: Reinference::ChangedContext,
+        reinference: Reinference::AnsweredContext,
     };
     let parameters = parameters(&agent_settings, person.kind());
 

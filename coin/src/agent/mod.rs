@@ -33,9 +33,10 @@ pub const MOST_TIMES_ASKED: u32 = 2;
 /// Which things are inferred again after an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Reinference {
-    /// Those that can see a thing whose known owners changed. A thing that no model could score sees nothing and is
-    /// left to the questions.
-    ChangedContext,
+    /// Those that can see a thing whose owners a person has named since. What a model concluded of a neighbour is no
+    /// news: it rests on evidence that was there before, and a guess that sets off the next one is how errors
+    /// travel. A thing that no model could score sees nothing and is left to the questions.
+    AnsweredContext,
     /// Every thing that nobody was asked about, as Algorithm 1 has it.
     EveryUnasked,
 }
@@ -159,16 +160,20 @@ impl Agent {
     /// Lines 4 to 7 of Algorithm 1: BUILD-KNOWN, then LLM-INFER for the things that need it.
     fn start_pass(&mut self) -> Vec<Effect> {
         let known = self.build_known();
-        let changed: BTreeSet<&ObjectId> =
-            self.objects.keys().filter(|object| known.get(*object) != self.known.get(*object)).collect();
+        let answered: BTreeSet<&ObjectId> = known
+            .iter()
+            .filter(|(_, known)| known.source == KnownSource::Answered)
+            .filter(|(object, known)| self.known.get(*object) != Some(known))
+            .map(|(object, _)| object)
+            .collect();
         let mut objects: Vec<ObjectId> = self
             .objects
             .iter()
             .filter(|(_, state)| state.answer().is_none())
             .filter(|(_, state)| match self.settings.reinference {
                 Reinference::EveryUnasked => true,
-                Reinference::ChangedContext => {
-                    !state.was_inferred() || state.related().iter().any(|related| changed.contains(related))
+                Reinference::AnsweredContext => {
+                    !state.was_inferred() || state.related().iter().any(|related| answered.contains(related))
                 }
             })
             .map(|(object, _)| object.clone())

@@ -121,7 +121,7 @@ mod prior {
     #[case(9, &[0.60, 0.05, 0.05, 0.05, 0.0, 0.0, 0.0, 0.0, 0.25])]
     #[case(12, &[0.60, 0.05, 0.05, 0.05, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.25])]
     fn goes_by_the_number_of_owners(#[case] members: usize, #[case] by_size: &[f64]) {
-        let prior = posterior(&vec![0; members], &[], &defaults());
+        let prior = posterior(&vec![0; members], None, &[], &defaults());
         for (size, &expected) in (1..=members).zip(by_size) {
             let of_size: Vec<f64> =
                 prior.entries().iter().filter(|(set, _)| set.len() == size).map(|entry| entry.1).collect();
@@ -137,7 +137,7 @@ mod usage {
     proptest! {
         #[test]
         fn the_posterior_is_a_distribution((sessions, relatives) in any_evidence()) {
-            let posterior = posterior(&sessions, &relatives, &defaults());
+            let posterior = posterior(&sessions, None, &relatives, &defaults());
             let sum: f64 = posterior.entries().iter().map(|entry| entry.1).sum();
             prop_assert!((sum - 1.0).abs() < EXACT);
             prop_assert!(posterior.entries().iter().all(|entry| (0.0..=1.0).contains(&entry.1)));
@@ -156,8 +156,8 @@ mod usage {
                 .iter()
                 .map(|relative| KnownRelative { owners: moved(relative.owners, &order), ..*relative })
                 .collect();
-            let before = posterior(&sessions, &relatives, &defaults());
-            let after = posterior(&permute(&sessions, &order), &permuted_relatives, &defaults());
+            let before = posterior(&sessions, None, &relatives, &defaults());
+            let after = posterior(&permute(&sessions, &order), None, &permuted_relatives, &defaults());
             for &(owners, probability) in before.entries() {
                 prop_assert!((probability - after.probability(moved(owners, &order))).abs() < 1e-10);
             }
@@ -165,7 +165,7 @@ mod usage {
     }
 
     fn score_of_first(sessions: &[u64], relatives: &[KnownRelative], parameters: &EvidenceParameters) -> f64 {
-        posterior(sessions, relatives, parameters).marginals(sessions.len())[0].value()
+        posterior(sessions, None, relatives, parameters).marginals(sessions.len())[0].value()
     }
 
     fn score_after_one_more(sessions: &[u64], parameters: &EvidenceParameters) -> (f64, f64) {
@@ -205,13 +205,13 @@ mod usage {
     #[case::two_alike(&[20, 19, 0], &[0, 1])]
     #[case::everyone_alike(&[12, 10, 11], &[0, 1, 2])]
     fn the_best_set_is_the_plain_reading(#[case] sessions: &[u64], #[case] owners: &[usize]) {
-        assert_eq!(posterior(sessions, &[], &defaults()).best().0, set(owners));
+        assert_eq!(posterior(sessions, None, &[], &defaults()).best().0, set(owners));
     }
 
     #[test]
     fn a_year_of_use_by_the_largest_home_stays_finite() {
         let sessions: Vec<u64> = (0..20).map(|place| 5000 / (place + 1)).collect();
-        let posterior = posterior(&sessions, &[near(&[0], 1.0)], &defaults());
+        let posterior = posterior(&sessions, None, &[near(&[0], 1.0)], &defaults());
         assert!(posterior.entries().iter().all(|entry| entry.1.is_finite()));
     }
 }
@@ -223,7 +223,7 @@ mod relatives {
         #[test]
         fn switched_off_they_change_nothing((sessions, relatives) in any_evidence()) {
             let off = EvidenceParameters { place: 0.0, looks: 0.0, ..defaults() };
-            assert_same(&posterior(&sessions, &relatives, &off), &posterior(&sessions, &[], &off), 0.0);
+            assert_same(&posterior(&sessions, None, &relatives, &off), &posterior(&sessions, None, &[], &off), 0.0);
         }
 
         #[test]
@@ -232,11 +232,11 @@ mod relatives {
             strength in 0.01..=1.0_f64,
         ) {
             prop_assume!(!owners.is_empty());
-            let alone = posterior(&sessions, &[], &defaults()).probability(owners);
+            let alone = posterior(&sessions, None, &[], &defaults()).probability(owners);
             for relation in [Relation::Near { weight: strength }, Relation::LooksAlike { similarity: strength }] {
-                let pulled = posterior(&sessions, &[KnownRelative { owners, relation }], &defaults());
+                let pulled = posterior(&sessions, None, &[KnownRelative { owners, relation }], &defaults());
                 prop_assert!(pulled.probability(owners) >= alone);
-                let stronger = posterior(&sessions, &[KnownRelative { owners, relation }; 2], &defaults());
+                let stronger = posterior(&sessions, None, &[KnownRelative { owners, relation }; 2], &defaults());
                 prop_assert!(stronger.probability(owners) >= pulled.probability(owners) - EXACT);
             }
         }
@@ -245,15 +245,15 @@ mod relatives {
         /// ∏(1 − ρ) of its prior, and no other's prior grows beyond 1.
         #[test]
         fn they_make_nothing_certain((sessions, relatives) in any_evidence()) {
-            let alone = posterior(&sessions, &[], &defaults());
-            let pulled = posterior(&sessions, &relatives, &defaults());
+            let alone = posterior(&sessions, None, &[], &defaults());
+            let pulled = posterior(&sessions, None, &relatives, &defaults());
             let strongest = defaults().place.max(defaults().looks);
             let independent = (1.0 - strongest).powi(relatives.len() as i32);
             let most_growth = independent + (1.0 - independent) / least_prior(sessions.len());
             for &(owners, probability) in alone.entries() {
                 prop_assert!(pulled.probability(owners) >= 0.999_999 * probability * independent / most_growth);
             }
-            let without_usage = posterior(&vec![0; sessions.len()], &relatives, &defaults());
+            let without_usage = posterior(&vec![0; sessions.len()], None, &relatives, &defaults());
             prop_assert!(without_usage.entries().iter().all(|entry| entry.1 > 0.0));
         }
 
@@ -262,13 +262,13 @@ mod relatives {
             sessions in any_sessions(1..=5), weight in 0.0..=1.0_f64, unlike in -1.0..=0.0_f64,
         ) {
             let silent = [near(&[], weight), looks_alike(&[], weight), looks_alike(&[0], unlike), near(&[0], 0.0)];
-            assert_same(&posterior(&sessions, &silent, &defaults()), &posterior(&sessions, &[], &defaults()), EXACT);
+            assert_same(&posterior(&sessions, None, &silent, &defaults()), &posterior(&sessions, None, &[], &defaults()), EXACT);
         }
     }
 
     /// The smallest π(S) of a household.
     fn least_prior(members: usize) -> f64 {
-        posterior(&vec![0; members], &[], &defaults())
+        posterior(&vec![0; members], None, &[], &defaults())
             .entries()
             .iter()
             .map(|entry| entry.1)
@@ -278,7 +278,7 @@ mod relatives {
     /// The prior as a mixture, by hand: ρ₁ = .05 · .8, ρ₂ = .5 · .5, on two members without sessions.
     #[test]
     fn the_prior_is_a_mixture_of_relatives_and_pi() {
-        let pulled = posterior(&[0, 0], &[near(&[0], 0.8), looks_alike(&[0, 1], 0.5)], &defaults());
+        let pulled = posterior(&[0, 0], None, &[near(&[0], 0.8), looks_alike(&[0, 1], 0.5)], &defaults());
         let unrelated = (1.0 - 0.04) * (1.0 - 0.25);
         let (single, everyone) = (0.3 / 0.85, 0.25 / 0.85);
         let expected = [
@@ -294,7 +294,7 @@ mod relatives {
     /// Twenty neighbours of Ann's do not outvote twenty sessions of Bob.
     #[test]
     fn a_crowd_does_not_outvote_usage() {
-        let posterior = posterior(&[0, 20, 0], &[near(&[0], 1.0); 20], &defaults());
+        let posterior = posterior(&[0, 20, 0], None, &[near(&[0], 1.0); 20], &defaults());
         assert_eq!(posterior.best().0, OwnerSet::single(user(1)));
     }
 
@@ -303,7 +303,7 @@ mod relatives {
     fn one_whose_owners_are_no_candidate_says_nothing() {
         let sessions = [1, 0, 0, 0, 0, 0, 0, 0, 2];
         let certain = EvidenceParameters { place: 1.0, ..defaults() };
-        let silent = posterior(&sessions, &[near(&[0, 1, 2, 3, 4], 1.0)], &certain);
-        assert_same(&silent, &posterior(&sessions, &[], &certain), 0.0);
+        let silent = posterior(&sessions, None, &[near(&[0, 1, 2, 3, 4], 1.0)], &certain);
+        assert_same(&silent, &posterior(&sessions, None, &[], &certain), 0.0);
     }
 }

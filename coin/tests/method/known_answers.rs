@@ -57,7 +57,7 @@ fn posteriors_are_those_of_numerical_integration() {
                 KnownRelative { owners: owners(&relative["owners"]), relation }
             })
             .collect();
-        let found = posterior(&sessions, &relatives, &EvidenceParameters::default());
+        let found = posterior(&sessions, None, &relatives, &EvidenceParameters::default());
         let expected = row["posterior"].as_array().unwrap();
         assert_eq!(found.entries().len(), expected.len());
         for entry in expected {

@@ -162,7 +162,7 @@ fn any_world() -> impl Strategy<Value = World> {
         Just(Gate::Always),
         Just(Gate::Never)
     ];
-    let reinference = prop_oneof![Just(Reinference::ChangedContext), Just(Reinference::EveryUnasked)];
+    let reinference = prop_oneof![Just(Reinference::AnsweredContext), Just(Reinference::EveryUnasked)];
     let thresholds = prop_oneof![3 => Just(CALIBRATED), 1 => Just(Thresholds::Uncalibrated)];
     let max_questions = prop_oneof![2 => Just(usize::MAX), 1 => 0..6_usize];
     (gate, reinference, thresholds, max_questions, 0..8_usize, any::<u64>(), any::<u64>()).prop_map(
@@ -231,7 +231,7 @@ proptest! {
 
     /// The second pass is the last in which both ways have seen the same.
     #[test]
-    fn a_changed_context_infers_some_of_the_unasked_again(world in any_world()) {
+    fn an_answer_infers_some_of_the_unasked_again(world in any_world()) {
         let passes = |reinference| -> Vec<BTreeSet<ObjectId>> {
             let settings = AgentSettings { reinference, max_questions: 2, ..world.settings.clone() };
             let trace = World { settings, ..world.clone() }.run();
@@ -241,7 +241,7 @@ proptest! {
             });
             inferred.collect()
         };
-        let (changed, every) = (passes(Reinference::ChangedContext), passes(Reinference::EveryUnasked));
+        let (changed, every) = (passes(Reinference::AnsweredContext), passes(Reinference::EveryUnasked));
         prop_assert_eq!(changed.first(), every.first());
         prop_assert!(changed.len() <= every.len());
         for (some, all) in changed.iter().zip(&every) {

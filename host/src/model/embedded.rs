@@ -5,6 +5,7 @@
 
 use async_trait::async_trait;
 use coin::calibration::EMBEDDED_MODEL;
+use coin::common_sense::expect;
 use coin::dialogue::{QuestionContext, read_answer, word_question};
 use coin::evidence::{EvidenceParameters, KnownRelative, Relation, likeness_counts, posterior};
 use coin::roster::Roster;
@@ -73,7 +74,8 @@ impl EmbeddedModel {
                 relatives.extend(answered(roster, look_alike.known_ownership, relation)?);
             }
         }
-        let distribution = posterior(&sessions, &relatives, &self.parameters);
+        let expectation = expect(object.class.as_str(), roster);
+        let distribution = posterior(&sessions, expectation.as_ref(), &relatives, &self.parameters);
         let reply = OwnershipReply {
             ownership_distribution: roster.scores(&distribution.marginals(roster.len())),
             owner_sets: Some(distribution.to_named(roster)),
