@@ -1,7 +1,10 @@
 //! From calibration samples to thresholds, and from thresholds to what is thought of one thing.
 
-use coin_schemas::calibration::{Calibration, NonconformityScore};
+use std::collections::BTreeSet;
+
+use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
 use coin_schemas::household::Score;
+use coin_schemas::report::Withheld;
 use thiserror::Error;
 
 use crate::conformal::risk::{Outcome, RiskSample, risk_threshold};
@@ -47,6 +50,19 @@ pub struct Levels {
     pub risk: Level,
 }
 
+/// What calibration samples were made from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Provenance {
+    /// The model that scored.
+    pub model: String,
+    /// The episodes' names, one for each household.
+    pub episodes: Vec<String>,
+    /// Which part of their history was scored.
+    pub history: History,
+    /// What the model was not told.
+    pub withheld: BTreeSet<Withheld>,
+}
+
 /// Why there is no calibration.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum CalibrationError {
@@ -59,9 +75,8 @@ pub enum CalibrationError {
 /// prediction set over members could never hold their owner; they count as wrong in q_set and λ̂, and have a
 /// cp_s as every other thing.
 pub fn calibrate(
-    model: &str,
+    provenance: Provenance,
     samples: &[CalibrationSample],
-    households: usize,
     levels: Levels,
     score: NonconformityScore,
 ) -> Result<Calibration, CalibrationError> {
@@ -87,20 +102,66 @@ pub fn calibrate(
             RiskSample { confidence, outcome }
         })
         .collect();
+    let Provenance { model, episodes, history, withheld } = provenance;
     Ok(Calibration {
-        model: model.to_owned(),
+        version: CALIBRATION_VERSION,
+        model,
         alpha: levels.alpha.value(),
         alpha_cp: levels.alpha_cp.value(),
         risk: levels.risk.value(),
         score,
         samples: samples.len(),
-        households,
+        households: episodes.len(),
         q_alpha,
         q_cp: split::stopping_threshold(&uncertainties, levels.alpha_cp).threshold(),
         q_set: label_set::coverage_threshold(&set_nonconformities, levels.alpha).threshold(),
         lambda: risk_threshold(&risk_samples, levels.risk),
+        episodes,
+        history,
+        withheld,
         created_with: concat!("coin ", env!("CARGO_PKG_VERSION")).to_owned(),
     })
+}
+
+/// A threshold that there were too few samples for, so that it settles nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TooFewSamples {
+    /// The threshold by its name in the file.
+    pub threshold: &'static str,
+    /// The level by its name in the file.
+    pub level_name: &'static str,
+    /// The level.
+    pub level: f64,
+    /// The least number of samples with which the level can be kept, if every one of them is scored well.
+    pub needed: usize,
+    /// What follows.
+    pub consequence: &'static str,
+}
+
+/// Which thresholds of a calibration settle nothing for want of samples.
+pub fn too_few_samples(samples: usize, levels: Levels) -> Vec<TooFewSamples> {
+    let mut lacking = Vec::new();
+    let needed = levels.alpha.least_samples();
+    if samples < needed {
+        for (threshold, consequence) in [
+            ("q_alpha", "every prediction set holds everybody"),
+            ("q_set", "every owner set stays plausible, so the set gate asks about everything"),
+        ] {
+            let level = levels.alpha.value();
+            lacking.push(TooFewSamples { threshold, level_name: "alpha", level, needed, consequence });
+        }
+    }
+    let needed = levels.risk.least_samples();
+    if samples < needed {
+        lacking.push(TooFewSamples {
+            threshold: "lambda",
+            level_name: "risk",
+            level: levels.risk.value(),
+            needed,
+            consequence: "the risk gate asks about everything",
+        });
+    }
+    lacking
 }
 
 /// What the gates compare with.

@@ -2,18 +2,22 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use coin::agent::{AgentSettings, Reinference};
-use coin::calibration::{CalibrationError, CalibrationSample, Levels, Thresholds, calibrate};
+use coin::calibration::{CalibrationError, CalibrationSample, Levels, Provenance, Thresholds, calibrate};
 use coin::sharing::ShareThresholds;
-use coin_schemas::calibration::{Calibration, NonconformityScore};
-use coin_schemas::report::Gate;
+use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
+use coin_schemas::episode::Truth;
+use coin_schemas::report::{Gate, Withheld};
+use coin_server::episode::LoadedEpisode;
 use thiserror::Error;
 
 use crate::client::ServerAddress;
-use crate::driver::Observer;
+use crate::driver::Unobserved;
 use crate::home::{self, Home};
 use crate::model::ChatModel;
+use crate::parallel;
 use crate::person::{Person, PersonError, PersonKind, PutQuestion, Response};
 use crate::report::true_owners;
 use crate::run::{RunError, drive};
@@ -52,7 +56,8 @@ pub enum CalibrationFileError {
     /// It was made for another model.
     #[error(
         "the calibration was made for the model {made_for:?}, not for {model:?}, whose scores mean something else; \
-         make one with `host calibrate --model {model} --episode DIR… --out FILE`"
+         make one with `host calibrate --model {model} --episode DIR… --out FILE`, or use it all the same with \
+         --force-calibration"
     )]
     OtherModel {
         /// Whose it is.
@@ -60,9 +65,43 @@ pub enum CalibrationFileError {
         /// Which model runs.
         model: String,
     },
+    /// It was made while the model knew more or less than it does now.
+    #[error(
+        "the calibration was made with {} and the run is with {}, so the scores mean something else; make one with \
+         `host calibrate` and the same --without, or use it all the same with --force-calibration",
+        told(calibration),
+        told(run)
+    )]
+    ToldOtherwise {
+        /// What was withheld then.
+        calibration: BTreeSet<Withheld>,
+        /// What is withheld now.
+        run: BTreeSet<Withheld>,
+    },
+    /// It was written by a later program.
+    #[error(
+        "{} has version {given} of the form, and this program reads version {CALIBRATION_VERSION}; \
+         make it again with `host calibrate`",
+        path.display()
+    )]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        given: u32,
+    },
     /// The program's own calibration is damaged, which is a fault of this program.
     #[error("the built-in calibration cannot be read: {0}; please report this")]
     BuiltIn(serde_json::Error),
+}
+
+fn told(withheld: &BTreeSet<Withheld>) -> &'static str {
+    match (withheld.contains(&Withheld::Background), withheld.contains(&Withheld::Usage)) {
+        (false, false) => "nothing withheld",
+        (true, false) => "the people's background withheld",
+        (false, true) => "usage withheld",
+        (true, true) => "background and usage withheld",
+    }
 }
 
 /// Reads a calibration file and checks its numbers.
@@ -71,6 +110,9 @@ pub fn read_calibration(path: &Path) -> Result<Calibration, CalibrationFileError
         .map_err(|source| CalibrationFileError::Read { path: path.to_owned(), source })?;
     let calibration: Calibration = serde_json::from_str(&text)
         .map_err(|source| CalibrationFileError::Form { path: path.to_owned(), source })?;
+    if calibration.version != CALIBRATION_VERSION {
+        return Err(CalibrationFileError::Version { path: path.to_owned(), given: calibration.version });
+    }
     let Calibration { alpha, alpha_cp, risk, q_alpha, q_cp, q_set, lambda, .. } = calibration;
     for (field, given) in [("alpha", alpha), ("alpha_cp", alpha_cp), ("risk", risk)] {
         if !(given > 0.0 && given < 1.0) {
@@ -113,6 +155,16 @@ pub enum CalibrateError {
         /// The episode's folder.
         episode: PathBuf,
     },
+    /// An episode is not split in time.
+    #[error(
+        "{} has no train_until, so it has no training days; name the moment in its episode.json, or calibrate on whole \
+         histories of other homes",
+        episode.display()
+    )]
+    NoTrainingDays {
+        /// The episode's folder.
+        episode: PathBuf,
+    },
     /// The episodes give no sample.
     #[error(transparent)]
     Samples(#[from] CalibrationError),
@@ -123,7 +175,7 @@ impl CalibrateError {
     pub fn is_refusal(&self) -> bool {
         match self {
             Self::Episode { source, .. } => source.is_refusal(),
-            Self::Twice { .. } | Self::Samples(_) => true,
+            Self::Twice { .. } | Self::NoTrainingDays { .. } | Self::Samples(_) => true,
         }
     }
 }
@@ -137,39 +189,91 @@ pub struct CalibrateSettings {
     pub levels: Levels,
     /// The nonconformity score of prediction sets over members.
     pub score: NonconformityScore,
+    /// Which part of the episodes' history is scored.
+    pub history: History,
+    /// What the model is not told.
+    pub withheld: BTreeSet<Withheld>,
 }
 
-/// Lets the model score every thing of every home, without a question, and computes the thresholds.
+/// A home whose every thing the model has scored once, without a question.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScoredHome {
+    /// The episode's name.
+    pub name: String,
+    /// The things with their scores and true owners, in the order of their ids.
+    pub samples: Vec<CalibrationSample>,
+}
+
+/// Lets the model score every thing of every home, without a question, and computes the thresholds. `scored` hears
+/// of every home that is done.
 pub async fn calibrate_on(
     settings: &CalibrateSettings,
-    model: &dyn ChatModel,
-    observer: &mut dyn Observer,
+    model: &Arc<dyn ChatModel>,
+    scored: impl FnMut(),
 ) -> Result<Calibration, CalibrateError> {
-    let mut samples = Vec::new();
+    let homes = score_homes(&settings.episodes, settings.history, &settings.withheld, model, scored).await?;
+    let samples: Vec<CalibrationSample> =
+        homes.iter().flat_map(|home| home.samples.iter().cloned()).collect();
+    let provenance = Provenance {
+        model: model.name().to_owned(),
+        episodes: homes.into_iter().map(|home| home.name).collect(),
+        history: settings.history,
+        withheld: settings.withheld.clone(),
+    };
+    Ok(calibrate(provenance, &samples, settings.levels, settings.score)?)
+}
+
+/// Lets the model score every thing of every home, in the order given.
+pub async fn score_homes(
+    episodes: &[PathBuf],
+    history: History,
+    withheld: &BTreeSet<Withheld>,
+    model: &Arc<dyn ChatModel>,
+    scored: impl FnMut(),
+) -> Result<Vec<ScoredHome>, CalibrateError> {
     let mut seen = BTreeSet::new();
-    for episode in &settings.episodes {
+    for episode in episodes {
         if !seen.insert(episode.canonicalize().unwrap_or_else(|_| episode.clone())) {
             return Err(CalibrateError::Twice { episode: episode.clone() });
         }
-        let scored = score_home(episode, model, observer).await;
-        samples.extend(scored.map_err(|source| CalibrateError::Episode {
-            episode: episode.clone(),
-            source: Box::new(source),
-        })?);
     }
-    Ok(calibrate(model.name(), &samples, seen.len(), settings.levels, settings.score)?)
+    let jobs = episodes.iter().cloned().map(|episode| {
+        let (model, withheld) = (Arc::clone(model), withheld.clone());
+        async move { score_home(&episode, history, &withheld, model.as_ref()).await }
+    });
+    parallel::in_order(jobs, scored).await
 }
 
 async fn score_home(
     folder: &Path,
+    history: History,
+    withheld: &BTreeSet<Withheld>,
     model: &dyn ChatModel,
-    observer: &mut dyn Observer,
-) -> Result<Vec<CalibrationSample>, RunError> {
-    let loaded = home::load(folder).await?;
-    let truth = coin_server::episode::load_truth(folder, &loaded.episode)?
-        .ok_or_else(|| RunError::NoTruth { episode: loaded.episode.name.clone() })?;
+) -> Result<ScoredHome, CalibrateError> {
+    let refused =
+        |source: RunError| CalibrateError::Episode { episode: folder.to_owned(), source: Box::new(source) };
+    let mut loaded = home::load(folder).await.map_err(|error| refused(error.into()))?;
+    let truth = coin_server::episode::load_truth(folder, &loaded.episode)
+        .map_err(|error| refused(error.into()))?
+        .ok_or_else(|| refused(RunError::NoTruth { episode: loaded.episode.name.clone() }))?;
+    if history == History::TrainingDays {
+        let until = loaded
+            .episode
+            .train_until
+            .ok_or_else(|| CalibrateError::NoTrainingDays { episode: folder.to_owned() })?;
+        loaded = loaded.as_it_stood(until);
+    }
+    score_loaded(loaded, &truth, withheld, model).await.map_err(refused)
+}
+
+async fn score_loaded(
+    loaded: LoadedEpisode,
+    truth: &Truth,
+    withheld: &BTreeSet<Withheld>,
+    model: &dyn ChatModel,
+) -> Result<ScoredHome, RunError> {
     let home = Home::open(loaded, None, &ServerAddress::InProcess).await?;
-    let owners = true_owners(&truth, &home.roster)?;
+    let owners = true_owners(truth, &home.roster)?;
     let agent_settings = AgentSettings {
         gate: Gate::Never,
         thresholds: Thresholds::Uncalibrated,
@@ -177,7 +281,7 @@ async fn score_home(
         max_questions: 0,
         reinference: Reinference::AnsweredContext,
     };
-    let (outcome, _) = drive(&home, agent_settings, model, &mut Nobody, observer).await?;
+    let (outcome, _) = drive(&home, agent_settings, withheld, model, &mut Nobody, &mut Unobserved).await?;
     let samples = owners
         .into_iter()
         .filter_map(|(object, owners)| {
@@ -189,8 +293,9 @@ async fn score_home(
             })
         })
         .collect();
+    let name = home.episode.name.clone();
     home.server.close().await;
-    Ok(samples)
+    Ok(ScoredHome { name, samples })
 }
 
 /// Calibration asks nobody.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use coin::calibration::{EMBEDDED_MODEL, Levels};
 use coin::conformal::{InvalidLevel, Level};
-use coin_schemas::calibration::NonconformityScore;
-use coin_schemas::report::Gate;
+use coin_schemas::calibration::{History, NonconformityScore};
+use coin_schemas::report::{Gate, Reinference, Withheld};
 
 use crate::client::ServerAddress;
 use crate::generate::GenerateArguments;
@@ -77,6 +77,15 @@ pub struct RunArguments {
     /// Thresholds of the model, from `host calibrate` [default: those that come with the embedded model]
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
+    /// Use a calibration that was made for another model; no guarantee holds then
+    #[arg(long, requires = "calibration")]
+    pub force_calibration: bool,
+    /// Which things are inferred again after an answer
+    #[arg(long, value_enum, default_value_t = ReinferenceArgument::AnsweredContext)]
+    pub reinference: ReinferenceArgument,
+    /// Keep something from the model, to see what it is worth; may be given twice
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub without: Vec<WithheldArgument>,
     /// Who answers: simulated, terminal, or a file of answers (JSON Lines)
     #[arg(long, value_name = "simulated|terminal|FILE", default_value = "simulated")]
     pub answers: Answers,
@@ -121,6 +130,14 @@ pub struct CalibrateArguments {
     /// What a prediction set is to hold: at least one true owner (the paper's score), or all of them
     #[arg(long, value_enum, default_value_t = ScoreArgument::AllOwners)]
     pub score: ScoreArgument,
+    /// Which part of the homes' history the model sees: all, or the days up to each episode's train_until. The
+    /// paper calibrates on the first days of the home that it judges; the thresholds then know the very things
+    /// that they are applied to, and no guarantee follows from them
+    #[arg(long, value_enum, default_value_t = HistoryArgument::Whole)]
+    pub history: HistoryArgument,
+    /// Keep something from the model; the thresholds are for runs that keep the same from it
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub without: Vec<WithheldArgument>,
     /// The model to calibrate
     #[arg(long, value_name = "NAME", default_value = EMBEDDED_MODEL)]
     pub model: ModelName,
@@ -201,6 +218,60 @@ impl From<ScoreArgument> for NonconformityScore {
         match argument {
             ScoreArgument::AnyOwner => Self::AnyOwner,
             ScoreArgument::AllOwners => Self::AllOwners,
+        }
+    }
+}
+
+/// Which things are inferred again after an answer, as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ReinferenceArgument {
+    /// Those that lie near or look like the thing that was answered
+    AnsweredContext,
+    /// Every thing that nobody was asked about (the paper's scheme)
+    EveryUnasked,
+}
+
+impl From<ReinferenceArgument> for Reinference {
+    fn from(argument: ReinferenceArgument) -> Self {
+        match argument {
+            ReinferenceArgument::AnsweredContext => Self::AnsweredContext,
+            ReinferenceArgument::EveryUnasked => Self::EveryUnasked,
+        }
+    }
+}
+
+/// What is kept from the model, as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum WithheldArgument {
+    /// The people's roles and occupations
+    Background,
+    /// Who used what
+    Usage,
+}
+
+impl From<WithheldArgument> for Withheld {
+    fn from(argument: WithheldArgument) -> Self {
+        match argument {
+            WithheldArgument::Background => Self::Background,
+            WithheldArgument::Usage => Self::Usage,
+        }
+    }
+}
+
+/// Which part of a history is seen, as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum HistoryArgument {
+    /// All of it
+    Whole,
+    /// The days up to train_until
+    TrainingDays,
+}
+
+impl From<HistoryArgument> for History {
+    fn from(argument: HistoryArgument) -> Self {
+        match argument {
+            HistoryArgument::Whole => Self::Whole,
+            HistoryArgument::TrainingDays => Self::TrainingDays,
         }
     }
 }

@@ -47,7 +47,18 @@ pub trait Observer: Send {
     fn observe(&mut self, event: &LogEvent) -> Result<(), EventLogError>;
 }
 
-/// What a run works with.
+/// Nobody takes note.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Unobserved;
+
+impl Observer for Unobserved {
+    fn observe(&mut self, _event: &LogEvent) -> Result<(), EventLogError> {
+        Ok(())
+    }
+}
+
+/// What a run works with. Its methods borrow it mutably even to read: a person and an observer may be sent to another
+/// thread, but not be shared between two.
 pub struct Driver<'a> {
     /// The three model-driven steps.
     pub steps: &'a Steps<'a>,
@@ -137,7 +148,7 @@ impl Driver<'_> {
         let steps = self.steps;
         let things = self.things;
         let as_of = self.as_of;
-        let household = self.roster.users();
+        let household = steps.household();
         // Results are taken in the order of the things, so that neither the log nor the report depends on which
         // conversation ends first.
         let mut results = futures::stream::iter(objects)
@@ -193,7 +204,7 @@ impl Driver<'_> {
         Ok(events)
     }
 
-    async fn record(&self, agent: &Agent, objects: &[ObjectId]) -> Result<(), DriveError> {
+    async fn record(&mut self, agent: &Agent, objects: &[ObjectId]) -> Result<(), DriveError> {
         for object in objects {
             let Some(state) = agent.object(object) else { continue };
             let (Some(scores), Some(distribution)) = (state.scores(), state.distribution()) else { continue };
@@ -301,7 +312,7 @@ impl Driver<'_> {
 
     /// A question that a model cannot word is worded without one, so that a person can still be asked.
     async fn word_question(
-        &self,
+        &mut self,
         thing: &TaskObject,
         scores: &[Score],
         times_asked: u32,
@@ -331,7 +342,7 @@ impl Driver<'_> {
 
     /// An answer that a model cannot read is read without one; what neither understands stays unresolved.
     async fn read_answer(
-        &self,
+        &mut self,
         question: &str,
         answer: &str,
         answered_by: Option<&UserName>,

@@ -12,6 +12,7 @@ pub mod home;
 pub mod model;
 pub mod observer;
 pub mod output;
+pub mod parallel;
 pub mod person;
 pub mod prompts;
 pub mod report;

@@ -3,17 +3,19 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
+use coin::calibration::too_few_samples;
 use coin_host::calibrate::{CalibrateSettings, calibrate_on, read_calibration};
 use coin_host::cli::{CalibrateArguments, Command, CommandLine, GenerateCommand, ModelName, RunArguments};
 use coin_host::generate;
 use coin_host::model::ChatModel;
 use coin_host::model::embedded::EmbeddedModel;
 use coin_host::observer::Chronicle;
-use coin_host::output::{EventLog, Narration, Printer, Progress, ResultFormat};
+use coin_host::output::{EventLog, Printer, Progress, ResultFormat};
 use coin_host::person::PersonKind;
-use coin_host::run::{Answers, RunSettings, run_episode};
+use coin_host::run::{Answers, ForeignCalibration, RunSettings, run_episode};
 use tempfile::NamedTempFile;
 use tracing_subscriber::EnvFilter;
 
@@ -66,9 +68,9 @@ fn runtime() -> Result<tokio::runtime::Runtime, Failure> {
         .map_err(|error| Failure::Failed(format!("the runtime does not start: {error}")))
 }
 
-fn model(name: ModelName) -> Box<dyn ChatModel> {
+fn model(name: ModelName) -> Arc<dyn ChatModel> {
     match name {
-        ModelName::Embedded => Box::new(EmbeddedModel::default()),
+        ModelName::Embedded => Arc::new(EmbeddedModel::default()),
     }
 }
 
@@ -95,6 +97,12 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
         answers: arguments.answers.clone(),
         max_questions: arguments.max_questions,
         seed: arguments.seed,
+        reinference: arguments.reinference.into(),
+        withheld: arguments.without.iter().copied().map(Into::into).collect(),
+        foreign_calibration: match arguments.force_calibration {
+            true => ForeignCalibration::Used,
+            false => ForeignCalibration::Refused,
+        },
     };
     let format = if arguments.json { ResultFormat::Json } else { ResultFormat::Text };
     let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
@@ -125,13 +133,23 @@ fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
         episodes: arguments.episode.clone(),
         levels: arguments.levels(),
         score: arguments.score.into(),
+        history: arguments.history.into(),
+        withheld: arguments.without.iter().copied().map(Into::into).collect(),
     };
     let model = model(arguments.model);
-    let mut chronicle = Chronicle::new(None, Narration::silent());
+    let bar = printer.bar(settings.episodes.len(), "homes scored");
     let calibration = runtime()?
-        .block_on(calibrate_on(&settings, model.as_ref(), &mut chronicle))
+        .block_on(calibrate_on(&settings, &model, || bar.inc(1)))
         .map_err(|error| failure(error.is_refusal(), &error))?;
+    bar.finish_and_clear();
     out.write_json(&calibration)?;
+    for lack in too_few_samples(calibration.samples, settings.levels) {
+        printer.progress(&format!(
+            "Too few samples for --{} {}: {} things were scored and at least {} are needed, so {} keeps nothing out: \
+             {}. Calibrate on more homes.",
+            lack.level_name, lack.level, calibration.samples, lack.needed, lack.threshold, lack.consequence,
+        ));
+    }
     printer.progress(&format!(
         "{}: {} things of {} homes; settled without a question from {:.3} on.",
         arguments.out.display(),

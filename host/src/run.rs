@@ -14,7 +14,7 @@ use coin_schemas::calibration::Calibration;
 use coin_schemas::episode::{Episode, Truth};
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::{ObjectId, Users};
-use coin_schemas::report::{Gate, Parameters, Report};
+use coin_schemas::report::{Gate, Parameters, Report, Withheld};
 use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS};
 use coin_server::episode::{EpisodeError, LoadedEpisode};
 use thiserror::Error;
@@ -75,6 +75,22 @@ pub struct RunSettings {
     pub max_questions: Option<usize>,
     /// The seed of the simulated person.
     pub seed: u64,
+    /// Which things are inferred again after an answer.
+    pub reinference: Reinference,
+    /// What the model is not told.
+    pub withheld: BTreeSet<Withheld>,
+    /// What to do with the calibration of another model.
+    pub foreign_calibration: ForeignCalibration,
+}
+
+/// What to do with a calibration that was made for another model, whose scores mean something else.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum ForeignCalibration {
+    /// Refuse it.
+    #[default]
+    Refused,
+    /// Use it; no guarantee holds.
+    Used,
 }
 
 /// Why a run came to nothing.
@@ -157,9 +173,9 @@ pub async fn run_episode(
         thresholds: calibration.as_ref().map_or(Thresholds::Uncalibrated, Thresholds::from),
         share: ShareThresholds::default(),
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
-        reinference: Reinference::AnsweredContext,
+        reinference: settings.reinference,
     };
-    let parameters = parameters(&agent_settings, person.kind());
+    let parameters = parameters(&agent_settings, person.kind(), &settings.withheld);
 
     observer
         .observe(&LogEvent::RunStarted {
@@ -171,7 +187,8 @@ pub async fn run_episode(
             objects: home.things.iter().map(|(id, thing)| (id.clone(), thing.class.clone())).collect(),
         })
         .map_err(DriveError::from)?;
-    let (outcome, mut cost) = drive(&home, agent_settings, model, person.as_mut(), observer).await?;
+    let (outcome, mut cost) =
+        drive(&home, agent_settings, &settings.withheld, model, person.as_mut(), observer).await?;
     cost.seconds = started.elapsed().as_secs_f64();
     let report = report::build(
         &outcome,
@@ -198,6 +215,7 @@ pub async fn run_episode(
 pub(crate) async fn drive(
     home: &Home,
     agent_settings: AgentSettings,
+    withheld: &BTreeSet<Withheld>,
     model: &dyn ChatModel,
     person: &mut dyn Person,
     observer: &mut dyn Observer,
@@ -206,7 +224,7 @@ pub(crate) async fn drive(
     for (object, &owners) in &home.answered {
         agent.remember_answer(object, Reading { owners, outside_household: owners.is_empty() });
     }
-    let steps = Steps::new(model, &home.server, &home.roster);
+    let steps = Steps::new(model, &home.server, &home.roster, withheld);
     let driver = Driver {
         steps: &steps,
         server: &home.server,
@@ -222,19 +240,30 @@ pub(crate) async fn drive(
     Ok((outcome, steps.cost()))
 }
 
-/// The calibration that was handed in, which must be the model's own, or the one that comes with the program.
+/// The calibration that was handed in, which must be the model's own and of a model that was told as much, or the one
+/// that comes with the program.
 fn calibration_for(settings: &RunSettings, model: &str) -> Result<Option<Calibration>, CalibrationFileError> {
-    match &settings.calibration {
-        Some(calibration) if calibration.model == model => Ok(Some(calibration.clone())),
-        Some(calibration) => Err(CalibrationFileError::OtherModel {
-            made_for: calibration.model.clone(),
-            model: model.to_owned(),
-        }),
-        None if model == EMBEDDED_MODEL => {
-            embedded_calibration().map(Some).map_err(CalibrationFileError::BuiltIn)
+    let Some(calibration) = &settings.calibration else {
+        return match model {
+            EMBEDDED_MODEL => embedded_calibration().map(Some).map_err(CalibrationFileError::BuiltIn),
+            _ => Ok(None),
+        };
+    };
+    if settings.foreign_calibration == ForeignCalibration::Refused {
+        if calibration.model != model {
+            return Err(CalibrationFileError::OtherModel {
+                made_for: calibration.model.clone(),
+                model: model.to_owned(),
+            });
         }
-        None => Ok(None),
+        if calibration.withheld != settings.withheld {
+            return Err(CalibrationFileError::ToldOtherwise {
+                calibration: calibration.withheld.clone(),
+                run: settings.withheld.clone(),
+            });
+        }
     }
+    Ok(Some(calibration.clone()))
 }
 
 fn person(
@@ -259,7 +288,7 @@ fn scripted(file: &Path, episode: &Episode) -> Result<ScriptedPerson, ScriptErro
     ScriptedPerson::from_file(file, &things, &episode.users)
 }
 
-fn parameters(agent: &AgentSettings, person: PersonKind) -> Parameters {
+fn parameters(agent: &AgentSettings, person: PersonKind, withheld: &BTreeSet<Withheld>) -> Parameters {
     let Neighbourhood { k, sigma, gamma, .. } = Neighbourhood::default();
     Parameters {
         k_near: k,
@@ -271,6 +300,8 @@ fn parameters(agent: &AgentSettings, person: PersonKind) -> Parameters {
         epsilon_in: agent.share.largest_spread,
         epsilon_out: agent.share.least_gap,
         max_questions: agent.max_questions,
+        reinference: agent.reinference,
+        withheld: withheld.clone(),
         answers: person.as_str().to_owned(),
     }
 }

@@ -1,7 +1,7 @@
 //! The three model-driven steps of the paper, each one conversation: LLM-INFER with its tool-calling loop,
 //! QUESTION-GENERATION and UNDERSTAND-ANSWER.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use coin::agent::Inference;
@@ -9,9 +9,9 @@ use coin::dialogue::Reading;
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::roster::Roster;
 use coin_schemas::catalogue::strip_number_formats;
-use coin_schemas::household::Scores;
-use coin_schemas::model::{OwnershipReply, ReadingReply, RelatedObjects, Task};
-use coin_schemas::report::Cost;
+use coin_schemas::household::{Background, ClassLabel, Scores, Users};
+use coin_schemas::model::{OwnershipReply, ReadingReply, RelatedObjects, SharingReply, Task};
+use coin_schemas::report::{Cost, Withheld};
 use coin_schemas::tools::{NearbyObjectsResult, SimilarObjectsResult};
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde::de::DeserializeOwned;
@@ -19,7 +19,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use crate::client::{ServerError, ToolOutcome, ToolServer};
-use crate::model::{ChatModel, ChatRequest, Message, ModelError, ReplyFormat, ToolCall};
+use crate::model::{ChatModel, ChatRequest, Message, ModelError, ReplyFormat, ToolCall, ToolDefinition};
 use crate::prompts;
 
 /// A model that has not come to an answer after so many turns will not.
@@ -83,21 +83,48 @@ pub struct Steps<'a> {
     model: &'a dyn ChatModel,
     server: &'a ToolServer,
     roster: &'a Roster,
+    /// What the model may call while it scores.
+    tools: Vec<ToolDefinition>,
+    /// The people as the model is told of them while it scores.
+    household: Users,
     meter: Meter,
     ownership_format: ReplyFormat,
     reading_format: ReplyFormat,
+    sharing_format: ReplyFormat,
 }
 
+/// The tools that tell what may be withheld.
+const TELLS_USAGE: &str = "get_usage_summary";
+const TELLS_BACKGROUND: &str = "list_users";
+
 impl<'a> Steps<'a> {
-    /// Steps that cost nothing yet.
-    pub fn new(model: &'a dyn ChatModel, server: &'a ToolServer, roster: &'a Roster) -> Self {
+    /// Steps that cost nothing yet. What is withheld is withheld from LLM-INFER alone: a question may still name a
+    /// role, and an answer that does can still be read.
+    pub fn new(
+        model: &'a dyn ChatModel,
+        server: &'a ToolServer,
+        roster: &'a Roster,
+        withheld: &BTreeSet<Withheld>,
+    ) -> Self {
+        let told = |tool: &ToolDefinition| match tool.name.as_str() {
+            TELLS_USAGE => !withheld.contains(&Withheld::Usage),
+            TELLS_BACKGROUND => !withheld.contains(&Withheld::Background),
+            _ => true,
+        };
+        let mut household = roster.users();
+        if withheld.contains(&Withheld::Background) {
+            household.values_mut().for_each(|background| *background = Background::default());
+        }
         Self {
+            tools: server.reading_tools().iter().filter(|tool| told(tool)).cloned().collect(),
+            household,
             model,
             server,
             roster,
             meter: Meter::default(),
             ownership_format: json_format::<OwnershipReply>("ownership"),
             reading_format: json_format::<ReadingReply>("reading"),
+            sharing_format: json_format::<SharingReply>("sharing"),
         }
     }
 
@@ -156,6 +183,18 @@ impl<'a> Steps<'a> {
         .await
     }
 
+    /// The first step of Active Ownership Learning: which classes are everybody's.
+    pub async fn judge_sharing(&self, classes: BTreeSet<ClassLabel>) -> Result<SharingReply, StepError> {
+        let task = Task::JudgeSharing { classes };
+        let mut conversation = Conversation::new(prompts::JUDGE_SHARING, &task)?;
+        self.converse(&mut conversation, &self.sharing_format, Ok).await
+    }
+
+    /// The people as the model is told of them while it scores.
+    pub fn household(&self) -> &Users {
+        &self.household
+    }
+
     fn read_scores(
         &self,
         reply: &OwnershipReply,
@@ -178,7 +217,7 @@ impl<'a> Steps<'a> {
         format: &ReplyFormat,
         read: impl Fn(Reply) -> Result<T, String>,
     ) -> Result<T, StepError> {
-        let tools = if conversation.may_call_tools() { self.server.reading_tools() } else { &[] };
+        let tools: &[ToolDefinition] = if conversation.may_call_tools() { &self.tools } else { &[] };
         let mut corrections = 0;
         for _ in 0..MOST_TURNS {
             let reply = self.turn(conversation, tools, format).await?;
@@ -206,7 +245,7 @@ impl<'a> Steps<'a> {
     async fn turn(
         &self,
         conversation: &Conversation,
-        tools: &[crate::model::ToolDefinition],
+        tools: &[ToolDefinition],
         reply: &ReplyFormat,
     ) -> Result<crate::model::ChatReply, ModelError> {
         self.meter.model_calls.fetch_add(1, Ordering::Relaxed);
@@ -225,9 +264,8 @@ impl<'a> Steps<'a> {
     ) -> Result<(), ServerError> {
         conversation.messages.push(Message::Assistant { text, tool_calls: calls.clone() });
         for call in calls {
-            let outcome = if !self.server.reading_tools().iter().any(|tool| tool.name == call.tool) {
-                let names: Vec<&str> =
-                    self.server.reading_tools().iter().map(|tool| tool.name.as_str()).collect();
+            let outcome = if !self.tools.iter().any(|tool| tool.name == call.tool) {
+                let names: Vec<&str> = self.tools.iter().map(|tool| tool.name.as_str()).collect();
                 let text = format!("there is no tool {:?}; the tools are {}", call.tool, names.join(", "));
                 ToolOutcome { text, is_error: true }
             } else if conversation.count_call(&call) > MOST_EQUAL_CALLS {

@@ -1,7 +1,11 @@
 //! The calibration file: thresholds, and what they were made from.
 
+use std::collections::BTreeSet;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use crate::report::Withheld;
 
 /// Which true owners a nonconformity score looks at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -15,10 +19,27 @@ pub enum NonconformityScore {
     AllOwners,
 }
 
+/// The version of the file's form.
+pub const CALIBRATION_VERSION: u32 = 1;
+
+/// Which part of the calibration households' history was scored.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum History {
+    /// All of it.
+    #[default]
+    Whole,
+    /// The first days, up to each episode's `train_until` (the paper's split in time).
+    TrainingDays,
+}
+
 /// Thresholds that were computed on calibration households, and where they come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
+    /// The version of the file's form; this program reads version 1.
+    #[serde(default = "first_version")]
+    pub version: u32,
     /// The model whose scores were used; the thresholds hold for no other.
     pub model: String,
     /// The miscoverage level α of prediction sets.
@@ -43,6 +64,19 @@ pub struct Calibration {
     /// Risk control: a thing is settled without a question where its best owner set has at least this
     /// probability. Above 1 where no threshold keeps the risk, so that everything is asked.
     pub lambda: f64,
+    /// The names of the episodes that were scored, so that nobody is judged by thresholds that know their home.
+    #[serde(default)]
+    pub episodes: Vec<String>,
+    /// Which part of their history was scored.
+    #[serde(default)]
+    pub history: History,
+    /// What the model was not told; thresholds of a model that knows less are no good for one that knows more.
+    #[serde(default)]
+    pub withheld: BTreeSet<Withheld>,
     /// The program and version that wrote the file.
     pub created_with: String,
+}
+
+fn first_version() -> u32 {
+    1
 }

@@ -37,6 +37,7 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("task.schema.json", schema_of::<model::Task>()),
         ("ownership-reply.schema.json", schema_of::<model::OwnershipReply>()),
         ("reading-reply.schema.json", schema_of::<model::ReadingReply>()),
+        ("sharing-reply.schema.json", schema_of::<model::SharingReply>()),
         ("get-usage-summary.arguments.schema.json", schema_of::<tools::GetUsageSummary>()),
         ("get-usage-summary.result.schema.json", schema_of::<tools::UsageSummary>()),
         ("nearby-objects.arguments.schema.json", schema_of::<tools::NearbyObjects>()),

@@ -1,18 +1,18 @@
-//! What is said to a model and what it says back: the slots of the three model-driven steps and their replies.
+//! What is said to a model and what it says back: the slots of the model-driven steps and their replies.
 //!
 //! A task is handed over as JSON, never woven into prose, so that a name or a caption that looks like an
 //! instruction stays a value.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use jiff::civil::DateTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::episode::EpisodeObject;
-use crate::household::{ObjectId, Owners, OwnershipBoolean, Scores, UserName, Users};
+use crate::household::{ClassLabel, ObjectId, Owners, OwnershipBoolean, Scores, UserName, Users};
 
-/// The slots of one of the three model-driven steps.
+/// The slots of one of the three model-driven steps, and of the one that a baseline has.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "task", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Task {
@@ -52,6 +52,12 @@ pub enum Task {
         #[schemars(with = "String")]
         answered_by: Option<UserName>,
     },
+    /// The first step of Active Ownership Learning, a baseline: call every class shared or owned. The reply is a
+    /// [`SharingReply`].
+    JudgeSharing {
+        /// The classes of the home, each once.
+        classes: BTreeSet<ClassLabel>,
+    },
 }
 
 /// A thing as a task names it: just what the map knows of it.
@@ -88,6 +94,13 @@ pub struct ReadingReply {
     /// The owner is somebody who does not belong to the household.
     #[serde(default)]
     pub owner_outside_household: bool,
+}
+
+/// The reply to [`Task::JudgeSharing`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct SharingReply {
+    /// Does everybody in a home use and own such a thing together? Classes left out are owned.
+    pub shared_classes: BTreeMap<ClassLabel, bool>,
 }
 
 /// What a thing's inference was made from: the things whose known owners it could see.

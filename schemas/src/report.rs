@@ -1,6 +1,6 @@
 //! The report of one episode: what was concluded, what was asked, and what it cost.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,6 +56,29 @@ pub enum Gate {
     Never,
 }
 
+/// What a model is not told, so that its worth can be measured (the paper's ablations).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Withheld {
+    /// The roles and occupations of the people.
+    Background,
+    /// Who used a thing.
+    Usage,
+}
+
+/// Which things are inferred again after an answer.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Reinference {
+    /// Those that can see a thing whose owners a person has named since. What a model concluded of a neighbour is no
+    /// news: it rests on evidence that was there before, and a guess that sets off the next one is how errors
+    /// travel. A thing that no model could score sees nothing and is left to the questions.
+    #[default]
+    AnsweredContext,
+    /// Every thing that nobody was asked about, as the paper's Algorithm 1 has it.
+    EveryUnasked,
+}
+
 /// The settings that a result depends on, beside model, gate and seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -78,6 +101,12 @@ pub struct Parameters {
     pub epsilon_out: f64,
     /// The largest number of questions, Q_max.
     pub max_questions: usize,
+    /// Which things are inferred again after an answer.
+    #[serde(default)]
+    pub reinference: Reinference,
+    /// What the model was not told.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub withheld: BTreeSet<Withheld>,
     /// Who answered: `simulated`, `terminal` or `scripted`.
     pub answers: String,
 }

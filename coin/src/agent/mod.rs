@@ -11,6 +11,7 @@ mod state;
 use std::collections::{BTreeMap, BTreeSet};
 
 use coin_schemas::household::ObjectId;
+pub use coin_schemas::report::Reinference;
 use coin_schemas::report::{Gate, Stopped};
 use thiserror::Error;
 
@@ -29,17 +30,6 @@ pub const KNOWN_CONFIDENCE: f64 = 0.9;
 
 /// How often a thing is asked about when answers leave it open.
 pub const MOST_TIMES_ASKED: u32 = 2;
-
-/// Which things are inferred again after an answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Reinference {
-    /// Those that can see a thing whose owners a person has named since. What a model concluded of a neighbour is no
-    /// news: it rests on evidence that was there before, and a guess that sets off the next one is how errors
-    /// travel. A thing that no model could score sees nothing and is left to the questions.
-    AnsweredContext,
-    /// Every thing that nobody was asked about, as Algorithm 1 has it.
-    EveryUnasked,
-}
 
 /// The settings of a run.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use rstest::rstest;
 use super::*;
 use crate::conformal::risk::ASK_EVERYTHING;
 use crate::owners::candidate_sets;
-use crate::support::{any_scores, any_set, level, roster, scores, set};
+use crate::support::{any_scores, any_set, level, provenance, roster, scores, set};
 
 fn levels(alpha: f64, alpha_cp: f64, risk: f64) -> Levels {
     Levels { alpha: level(alpha), alpha_cp: level(alpha_cp), risk: level(risk) }
@@ -40,7 +40,7 @@ fn nine_things() -> Vec<CalibrationSample> {
 }
 
 fn calibrated(samples: &[CalibrationSample], levels: Levels) -> Calibration {
-    calibrate("a-model", samples, 3, levels, NonconformityScore::AllOwners).unwrap()
+    calibrate(provenance("a-model", 3), samples, levels, NonconformityScore::AllOwners).unwrap()
 }
 
 /// N = 9 and α = .2: rank 8. Nonconformity i/16, so q_α = 8/16; Γ of i = 9 is empty, cp_s = 1, the others' i/16, and
@@ -49,6 +49,7 @@ fn calibrated(samples: &[CalibrationSample], levels: Levels) -> Calibration {
 #[test]
 fn nine_things_have_the_thresholds_of_the_equations() {
     let expected = Calibration {
+        version: 1,
         model: "a-model".to_owned(),
         alpha: 0.2,
         alpha_cp: 0.3,
@@ -60,6 +61,9 @@ fn nine_things_have_the_thresholds_of_the_equations() {
         q_cp: 3.0 / 16.0,
         q_set: 27.0 / 32.0,
         lambda: (27.0_f64 / 32.0).next_up(),
+        episodes: ["home-1", "home-2", "home-3"].map(str::to_owned).to_vec(),
+        history: History::Whole,
+        withheld: BTreeSet::new(),
         created_with: concat!("coin ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
     assert_eq!(calibrated(&nine_things(), levels(0.2, 0.3, 0.2)), expected);
@@ -73,7 +77,9 @@ fn the_two_scores_look_at_the_best_and_at_the_worst_owner() {
         owners: set(&[0, 1]),
     };
     let q_alpha = |score| {
-        calibrate("a-model", &vec![sample.clone(); 9], 1, levels(0.2, 0.05, 0.1), score).unwrap().q_alpha
+        calibrate(provenance("a-model", 1), &vec![sample.clone(); 9], levels(0.2, 0.05, 0.1), score)
+            .unwrap()
+            .q_alpha
     };
     assert_eq!(q_alpha(NonconformityScore::AnyOwner), 0.25);
     assert_eq!(q_alpha(NonconformityScore::AllOwners), 0.75);
@@ -121,9 +127,13 @@ fn things_that_nobody_owns_are_left_out_of_one_threshold_and_wrong_in_two() {
 fn without_an_owned_thing_there_is_no_calibration() {
     let strange = CalibrationSample { owners: OwnerSet::EMPTY, ..nine_things().remove(0) };
     for things in [vec![], vec![strange]] {
-        let refused =
-            calibrate("a-model", &things, 1, levels(0.2, 0.05, 0.012), NonconformityScore::AnyOwner)
-                .unwrap_err();
+        let refused = calibrate(
+            provenance("a-model", 1),
+            &things,
+            levels(0.2, 0.05, 0.012),
+            NonconformityScore::AnyOwner,
+        )
+        .unwrap_err();
         assert_eq!(
             refused.to_string(),
             "no calibration sample has an owner in the household; give episodes with a truth file"
@@ -257,5 +267,19 @@ mod assessment {
         assert_eq!(thought.plausible_sets, 3);
         assert_eq!(thought.uncertainty, 0.5);
         assert!(thought.settled);
+    }
+}
+
+#[rstest]
+#[case::none(0, &["q_alpha", "q_set", "lambda"])]
+#[case::one_short_of_alpha(3, &["q_alpha", "q_set", "lambda"])]
+#[case::enough_for_alpha(4, &["lambda"])]
+#[case::one_short_of_risk(82, &["lambda"])]
+#[case::enough(83, &[])]
+fn too_few_samples_are_told(#[case] samples: usize, #[case] lacking: &[&str]) {
+    let found = too_few_samples(samples, levels(0.2, 0.05, 0.012));
+    assert_eq!(found.iter().map(|lack| lack.threshold).collect::<Vec<_>>(), lacking);
+    for lack in found {
+        assert_eq!(lack.needed, if lack.threshold == "lambda" { 83 } else { 4 });
     }
 }

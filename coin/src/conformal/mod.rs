@@ -67,6 +67,12 @@ impl Level {
         rank.clamp(1, samples.max(1))
     }
 
+    /// The least N with ⌈(N+1)(1−α)⌉ ≤ N, which is also the least with ⌊α(N+1)⌋ ≥ 1: ⌈1/α⌉ − 1. With fewer
+    /// samples no finite threshold keeps the level.
+    pub fn least_samples(self) -> usize {
+        (MILLION.div_ceil(self.millionths) - 1) as usize
+    }
+
     /// ⌊ε(N+1)⌋, the number of losses out of N + 1 that the level allows.
     pub fn allowed_losses(self, samples: usize) -> usize {
         ((samples as u64 + 1) * self.millionths / MILLION) as usize

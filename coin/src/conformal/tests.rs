@@ -32,6 +32,16 @@ fn ranks_are_exact_for_every_size_and_every_thousandth() {
     }
 }
 
+#[test]
+fn the_least_samples_are_the_first_with_which_a_rank_exists() {
+    for j in 1..1000 {
+        let level = level(j as f64 / 1000.0);
+        let least = (0..).find(|&samples| level.upper_rank(samples) <= samples).unwrap();
+        assert_eq!(level.least_samples(), least, "α = {j}/1000");
+        assert_eq!((0..).find(|&samples| level.allowed_losses(samples) >= 1), Some(least), "α = {j}/1000");
+    }
+}
+
 /// The equation as it stands, in floating point.
 fn rounded_up(samples: usize, alpha: f64) -> usize {
     ((samples + 1) as f64 * (1.0 - alpha)).ceil() as usize

@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rstest::rstest;
 
-use crate::support::{level, set, user};
+use crate::support::{level, provenance, set, user};
 
 const FALSE_ALARM: f64 = 1e-6;
 const MEMBERS: usize = 3;
@@ -239,7 +239,8 @@ fn a_calibration_keeps_all_its_promises_at_once(
     let (mut covered, mut losses, mut asked) = (0, 0, 0);
     for _ in 0..trials {
         let things = draw_many(&mut generator, samples);
-        let calibration = calibrate("a-model", &things, 3, levels, NonconformityScore::AllOwners).unwrap();
+        let calibration =
+            calibrate(provenance("a-model", 3), &things, levels, NonconformityScore::AllOwners).unwrap();
         let thing = draw(&mut generator);
         let thought = Thresholds::from(&calibration).assess(
             &thing.scores,

@@ -10,7 +10,7 @@ use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin_schemas::calibration::NonconformityScore;
 use serde_json::Value;
 
-use crate::support::{level, scores, set, values};
+use crate::support::{level, provenance, scores, set, values};
 
 fn table(text: &str) -> Vec<Value> {
     let rows: Vec<Value> = serde_json::from_str(text).unwrap();
@@ -135,7 +135,8 @@ fn a_calibration_has_the_same_thresholds() {
         for expected in row["levels"].as_array().unwrap() {
             let level = level(number(&expected["level"]));
             let levels = Levels { alpha: level, alpha_cp: level, risk: level };
-            let found = calibrate("a-model", &samples, 1, levels, NonconformityScore::AnyOwner).unwrap();
+            let found =
+                calibrate(provenance("a-model", 1), &samples, levels, NonconformityScore::AnyOwner).unwrap();
             assert_close(found.q_alpha, expected["upper"].as_f64().unwrap_or(1.0), 1e-15, expected);
         }
     }

@@ -79,3 +79,13 @@ pub(crate) fn any_order(members: usize) -> impl Strategy<Value = Vec<usize>> {
 pub(crate) fn moved(set: OwnerSet, order: &[usize]) -> OwnerSet {
     set.iter().map(|member| user(order[member.place()])).collect()
 }
+
+/// Samples of a model that was told everything, from this many households.
+pub(crate) fn provenance(model: &str, households: usize) -> coin::calibration::Provenance {
+    coin::calibration::Provenance {
+        model: model.to_owned(),
+        episodes: (1..=households).map(|number| format!("home-{number}")).collect(),
+        history: coin_schemas::calibration::History::Whole,
+        withheld: std::collections::BTreeSet::new(),
+    }
+}

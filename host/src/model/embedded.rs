@@ -5,12 +5,12 @@
 
 use async_trait::async_trait;
 use coin::calibration::EMBEDDED_MODEL;
-use coin::common_sense::expect;
+use coin::common_sense::{Tendency, expect, tendency};
 use coin::dialogue::{QuestionContext, read_answer, word_question};
 use coin::evidence::{EvidenceParameters, KnownRelative, Relation, likeness_counts, posterior};
 use coin::roster::Roster;
 use coin_schemas::household::{Owners, Source};
-use coin_schemas::model::{OwnershipReply, ReadingReply, Task, TaskObject};
+use coin_schemas::model::{OwnershipReply, ReadingReply, SharingReply, Task, TaskObject};
 use coin_schemas::tools::{KnownOwnership, NearbyObjectsResult, SimilarObjectsResult, UsageSummary};
 use jiff::civil::DateTime;
 use serde::de::DeserializeOwned;
@@ -120,6 +120,15 @@ impl ChatModel for EmbeddedModel {
                     owner_outside_household: reading.outside_household,
                 })
             }
+            Task::JudgeSharing { classes } => say(&SharingReply {
+                shared_classes: classes
+                    .into_iter()
+                    .map(|class| {
+                        let shared = tendency(class.as_str()) == Some(Tendency::Shared);
+                        (class, shared)
+                    })
+                    .collect(),
+            }),
         }
     }
 }

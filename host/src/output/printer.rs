@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind, Write};
 
 use coin_schemas::household::Users;
 use coin_schemas::report::Report;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::narration::{Bars, Narration};
 use super::{Style, plain_text, table};
@@ -51,6 +52,18 @@ impl Printer {
                 Narration::new(Box::new(io::stderr()), Style::of_stderr(), person, bars)
             }
         }
+    }
+
+    /// A bar for work of this many pieces, drawn where somebody watches.
+    pub fn bar(&self, pieces: usize, what: &'static str) -> ProgressBar {
+        let watched = self.progress == Progress::Told && console::Term::stderr().is_term();
+        let target = if watched { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(Some(pieces as u64), target);
+        if let Ok(template) = ProgressStyle::with_template("  {bar:30} {pos}/{len} {msg} · {elapsed}") {
+            bar.set_style(template.progress_chars("━━─"));
+        }
+        bar.set_message(what);
+        bar
     }
 
     /// Prints the report on stdout.

@@ -74,7 +74,7 @@ fn task(home: &Home, id: &str) -> Task {
 
 async fn infer(model: &dyn ChatModel) -> (InferStep, Cost) {
     let home = home().await;
-    let steps = Steps::new(model, &home.server, &home.roster);
+    let steps = Steps::new(model, &home.server, &home.roster, &BTreeSet::new());
     let step = steps.infer(&task(&home, "3")).await;
     (step, steps.cost())
 }
@@ -192,11 +192,11 @@ async fn an_answer_may_name_members_only() {
         answered_by: None,
     };
     let invents = Scripted::new([says(r#"{"ownership_boolean": {"Eve": true}}"#)]);
-    let steps = Steps::new(&invents, &home.server, &home.roster);
+    let steps = Steps::new(&invents, &home.server, &home.roster, &BTreeSet::new());
     assert!(steps.read_answer(&task).await.unwrap_err().to_string().contains("Eve"));
     let outside =
         Scripted::new([says(r#"{"ownership_boolean": {"Bob": false}, "owner_outside_household": true}"#)]);
-    let steps = Steps::new(&outside, &home.server, &home.roster);
+    let steps = Steps::new(&outside, &home.server, &home.roster, &BTreeSet::new());
     let reading = steps.read_answer(&task).await.unwrap();
     assert_eq!(reading, Reading { owners: OwnerSet::EMPTY, outside_household: true });
 }

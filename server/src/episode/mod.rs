@@ -19,6 +19,7 @@ use std::path::Path;
 use coin::captions::{CaptionReader, Observation};
 use coin::roster::Roster;
 use coin_schemas::episode::{CaptionLine, Episode, FEATURE_DIMENSIONS};
+use jiff::civil::DateTime;
 use serde_json::Value;
 
 pub use error::{EpisodeError, Place, Within};
@@ -50,6 +51,19 @@ pub struct LoadedEpisode {
     pub observations: Vec<Observation>,
     /// The visual features in the order of `episode.objects`, where the episode has any.
     pub features: Option<Vec<Feature>>,
+}
+
+impl LoadedEpisode {
+    /// The same home as it stood at an earlier moment: without the captions from then on.
+    #[must_use]
+    pub fn as_it_stood(mut self, moment: DateTime) -> Self {
+        let seen = |observation: &Observation| observation.at < moment;
+        let lines = self.captions.into_iter().zip(&self.observations);
+        self.captions = lines.filter(|(_, observation)| seen(observation)).map(|(line, _)| line).collect();
+        self.observations.retain(seen);
+        self.episode.now = moment;
+        self
+    }
 }
 
 /// Loads the episode in a folder, but for its truth.

@@ -80,6 +80,10 @@ fn metrics(objects: usize, share: f64) -> MetricsSummary {
 
 fn calibration() -> Calibration {
     Calibration {
+        version: 1,
+        episodes: Vec::new(),
+        history: Default::default(),
+        withheld: Default::default(),
         model: "embedded".to_owned(),
         alpha: 0.2,
         alpha_cp: 0.05,
@@ -114,6 +118,8 @@ fn report() -> Report {
         gate: Gate::Risk,
         seed: 1,
         parameters: Parameters {
+            reinference: Default::default(),
+            withheld: Default::default(),
             k_near: 5,
             k_sim: 5,
             sigma: 0.5,
