@@ -6,6 +6,7 @@
 //! Questioning* (Hashimoto et al.); each stands in one function that names it.
 
 pub mod agent;
+pub mod baselines;
 pub mod calibration;
 pub mod captions;
 pub mod common_sense;
@@ -19,6 +20,7 @@ pub mod roster;
 pub mod sharing;
 pub mod similarity;
 pub mod space;
+pub mod statistics;
 pub mod usage;
 
 // The tests share their helpers with the integration tests, which know this crate by its name.
