@@ -6,10 +6,11 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use coin::calibration::{EMBEDDED_MODEL, Levels};
 use coin::conformal::{InvalidLevel, Level};
 use coin_schemas::calibration::{History, NonconformityScore};
+use coin_schemas::experiment::Method;
 use coin_schemas::report::{Gate, Reinference, Withheld};
 
 use crate::client::ServerAddress;
-use crate::generate::GenerateArguments;
+use crate::generate::{GenerateArguments, Protocol};
 use crate::run::Answers;
 
 const EXAMPLES: &str = "\
@@ -24,6 +25,8 @@ Examples:
       Use a server in its own process.
   host generate routine --protocol week --seed 7 --out HOME
       Make a household of your own.
+  host experiment --episode fixtures/episodes/small-house --out RESULTS
+      The paper's comparison, with tables and figures.
 
 Exit status: 0 done; 1 failed; 2 wrong use or a refused file.";
 
@@ -44,9 +47,95 @@ pub struct CommandLine {
 pub enum Command {
     /// Compute thresholds on homes with known owners, for use on other homes
     Calibrate(CalibrateArguments),
+    /// Compare COIN with the paper's baselines and ablations, in figures, tables and pages
+    Experiment(ExperimentArguments),
     /// Make households with known owners
     #[command(subcommand)]
     Generate(GenerateCommand),
+}
+
+/// Arguments of `host experiment`.
+#[derive(Debug, Args)]
+#[command(after_help = EXPERIMENT_EXAMPLES)]
+pub struct ExperimentArguments {
+    /// Folders of the episodes to judge, with a truth file each
+    #[arg(long, value_name = "DIR", required = true, num_args = 1..)]
+    pub episode: Vec<PathBuf>,
+    /// Folders of other episodes to calibrate on, every ablation by itself [default: the calibration that comes with
+    /// the model]
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    pub calibrate_on: Vec<PathBuf>,
+    /// What to compare [default: everything]
+    #[arg(long, value_enum, value_name = "METHOD", value_delimiter = ',', num_args = 1..)]
+    pub methods: Vec<MethodArgument>,
+    /// How often each method goes through each episode
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..))]
+    pub trials: u64,
+    /// The seed of the first trial; the same seed gives the same figures, times aside
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Homes of these kinds on which the guarantees are measured
+    #[arg(long, value_enum, value_name = "PROTOCOL", value_delimiter = ',', num_args = 1.., default_value = "week")]
+    pub coverage_protocols: Vec<Protocol>,
+    /// How many homes of each kind; 0 measures nothing
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    pub coverage_homes: usize,
+    /// Write results.json, tables.md, figures and index.html to this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// The model that scores, words and reads
+    #[arg(long, value_name = "NAME", default_value = EMBEDDED_MODEL)]
+    pub model: ModelName,
+    /// Say nothing while working
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+const EXPERIMENT_EXAMPLES: &str = "\
+Examples:
+  host experiment --episode fixtures/episodes/small-house --out RESULTS
+      All nine methods, ten trials; open RESULTS/index.html afterwards.
+  host experiment --episode HOME1 HOME2 --methods coin,coin_paper,frequency --trials 3 --coverage-homes 0 --out RESULTS
+      Some methods on homes of your own.";
+
+/// A method as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum MethodArgument {
+    /// COIN with conformal risk control
+    Coin,
+    /// COIN with the paper's gate and scheme of inference
+    CoinPaper,
+    /// Active Ownership Learning
+    Actowl,
+    /// The model with the map alone
+    NlmapLlm,
+    /// Who used it last
+    LastUser,
+    /// Who used it most often
+    Frequency,
+    /// COIN that may not ask
+    NoQuestions,
+    /// COIN without roles and occupations
+    NoBackground,
+    /// COIN without usage
+    NoUsage,
+}
+
+impl From<MethodArgument> for Method {
+    fn from(argument: MethodArgument) -> Self {
+        match argument {
+            MethodArgument::Coin => Self::Coin,
+            MethodArgument::CoinPaper => Self::CoinPaper,
+            MethodArgument::Actowl => Self::Actowl,
+            MethodArgument::NlmapLlm => Self::NlmapLlm,
+            MethodArgument::LastUser => Self::LastUser,
+            MethodArgument::Frequency => Self::Frequency,
+            MethodArgument::NoQuestions => Self::NoQuestions,
+            MethodArgument::NoBackground => Self::NoBackground,
+            MethodArgument::NoUsage => Self::NoUsage,
+        }
+    }
 }
 
 /// What can be generated.
@@ -119,13 +208,13 @@ pub struct CalibrateArguments {
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// How often a prediction set may miss
-    #[arg(long, value_name = "LEVEL", default_value = "0.2", value_parser = level)]
+    #[arg(long, value_name = "LEVEL", default_value = DEFAULT_ALPHA, value_parser = level)]
     pub alpha: Level,
     /// Level of the paper's stopping threshold
-    #[arg(long, value_name = "LEVEL", default_value = "0.05", value_parser = level)]
+    #[arg(long, value_name = "LEVEL", default_value = DEFAULT_ALPHA_CP, value_parser = level)]
     pub alpha_cp: Level,
     /// Share of wrong owner sets that is tolerated in the end
-    #[arg(long, value_name = "LEVEL", default_value = "0.012", value_parser = level)]
+    #[arg(long, value_name = "LEVEL", default_value = DEFAULT_RISK, value_parser = level)]
     pub risk: Level,
     /// What a prediction set is to hold: at least one true owner (the paper's score), or all of them
     #[arg(long, value_enum, default_value_t = ScoreArgument::AllOwners)]
@@ -150,6 +239,24 @@ impl CalibrateArguments {
     /// The three levels.
     pub fn levels(&self) -> Levels {
         Levels { alpha: self.alpha, alpha_cp: self.alpha_cp, risk: self.risk }
+    }
+}
+
+/// The paper's α and α_cp, and the share of wrong owner sets that it ends with.
+const DEFAULT_ALPHA: &str = "0.2";
+const DEFAULT_ALPHA_CP: &str = "0.05";
+const DEFAULT_RISK: &str = "0.012";
+
+/// The levels that are calibrated for where nobody says otherwise.
+pub fn default_levels() -> Levels {
+    let constant = |text| match level(text) {
+        Ok(level) => level,
+        Err(reason) => unreachable!("a constant of this module is a level: {reason}"),
+    };
+    Levels {
+        alpha: constant(DEFAULT_ALPHA),
+        alpha_cp: constant(DEFAULT_ALPHA_CP),
+        risk: constant(DEFAULT_RISK),
     }
 }
 

@@ -30,6 +30,9 @@ pub enum DriveError {
     /// The person could not be reached.
     #[error(transparent)]
     Person(#[from] PersonError),
+    /// A step on which everything after it rests came to nothing.
+    #[error("the model gave nothing to go on with: {0}")]
+    Step(#[from] StepError),
     /// The event log takes no more.
     #[error(transparent)]
     Log(#[from] EventLogError),

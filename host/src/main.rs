@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use coin::calibration::too_few_samples;
 use coin_host::calibrate::{CalibrateSettings, calibrate_on, read_calibration};
-use coin_host::cli::{CalibrateArguments, Command, CommandLine, GenerateCommand, ModelName, RunArguments};
+use coin_host::cli::{CalibrateArguments, Command, CommandLine, ExperimentArguments, GenerateCommand, MethodArgument, ModelName, RunArguments, default_levels};
+use coin_host::experiment::{CoverageHomes, ExperimentSettings, check_folder, write};
 use coin_host::generate;
 use coin_host::model::ChatModel;
 use coin_host::model::embedded::EmbeddedModel;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         None => run(&arguments.run),
         Some(Command::Calibrate(arguments)) => calibrate(arguments),
+        Some(Command::Experiment(arguments)) => experiment(arguments),
         Some(Command::Generate(GenerateCommand::Routine(arguments))) => {
             generate::run(arguments).map_err(|error| Failure::Refused(format!("{error:#}")))
         }
@@ -158,6 +160,38 @@ fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
         calibration.lambda,
     ));
     Ok(())
+}
+
+fn experiment(arguments: &ExperimentArguments) -> Result<(), Failure> {
+    check_folder(&arguments.out).map_err(|error| failure(true, &error))?;
+    let methods: Vec<MethodArgument> = match arguments.methods.is_empty() {
+        true => MethodArgument::value_variants().to_vec(),
+        false => arguments.methods.clone(),
+    };
+    let coverage = arguments.coverage_protocols.iter().map(|&protocol| CoverageHomes {
+        protocol,
+        households: arguments.coverage_homes,
+    });
+    let settings = ExperimentSettings {
+        episodes: arguments.episode.clone(),
+        calibrate_on: arguments.calibrate_on.clone(),
+        levels: default_levels(),
+        methods: methods.into_iter().map(Into::into).collect(),
+        trials: usize::try_from(arguments.trials).unwrap_or(usize::MAX),
+        seed: arguments.seed,
+        coverage: coverage.filter(|homes| homes.households > 0).collect(),
+    };
+    let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
+    let printer = Printer::new(ResultFormat::Text, progress);
+    let mut bars = printer.bars();
+    let results = runtime()?
+        .block_on(coin_host::experiment::run(&settings, model(arguments.model), &mut bars))
+        .map_err(|error| failure(error.is_refusal(), &error))?;
+    write(&results, &arguments.out).map_err(|error| failure(false, &error))?;
+    printer.progress(&format!("Open {} in a browser.", arguments.out.join("index.html").display()));
+    printer
+        .text(&coin_host::experiment::summary(&results))
+        .map_err(|error| Failure::Failed(format!("standard output takes no more: {error}")))
 }
 
 /// A file that appears whole or not at all.

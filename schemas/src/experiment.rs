@@ -238,8 +238,11 @@ pub enum Guarantee {
     AllOwners,
     /// The label-set prediction set holds the true owner set.
     OwnerSet,
-    /// A thing is settled without a question *and* wrong (at most this often).
+    /// A thing is settled without a question *and* wrong (at most this often): what risk control promises of the
+    /// state before the first question.
     SettledWrong,
+    /// A thing is wrong when everything that was worth a question has been asked (at most this often).
+    WrongInTheEnd,
 }
 
 /// How often a promise was kept on households that were used for nothing else.
@@ -254,7 +257,7 @@ pub struct Coverage {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "NonconformityScore")]
     pub score: Option<NonconformityScore>,
-    /// The promised share: at least this for a prediction set, at most this for `settled_wrong`.
+    /// The promised share: at least this for a prediction set, at most this for what is wrong.
     pub promised: f64,
     /// How many households were judged.
     pub households: usize,

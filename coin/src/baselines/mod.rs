@@ -1,5 +1,6 @@
 //! The methods that the paper compares COIN with, as far as they need no model: two heuristics and a generative model.
 
+pub mod actowl;
 mod frequency;
 mod last_user;
 #[cfg(test)]

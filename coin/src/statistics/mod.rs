@@ -110,7 +110,8 @@ fn exact_upper_tail(n1: usize, n2: usize, u: f64) -> f64 {
         counts = next;
     }
     let total: f64 = counts[n1].iter().sum();
-    let tail: f64 = counts[n1].iter().enumerate().filter(|&(k, _)| k as f64 >= u).map(|(_, count)| count).sum();
+    let tail: f64 =
+        counts[n1].iter().enumerate().filter(|&(k, _)| k as f64 >= u).map(|(_, count)| count).sum();
     tail / total
 }
 

@@ -51,7 +51,10 @@ fn holms_correction_is_the_scripts() {
         let found = holm(&numbers(&row["p"]));
         let expected = numbers(&row["corrected"]);
         assert_eq!(found.len(), expected.len());
-        assert!(found.iter().zip(expected).all(|(&found, expected)| close(found, expected)), "{found:?} in {row}");
+        assert!(
+            found.iter().zip(expected).all(|(&found, expected)| close(found, expected)),
+            "{found:?} in {row}"
+        );
     }
 }
 

@@ -66,6 +66,11 @@ impl Printer {
         bar
     }
 
+    /// Bars for work in several parts, one after the other.
+    pub fn bars(&self) -> PartBars {
+        PartBars { printer: *self, bar: None }
+    }
+
     /// Prints the report on stdout.
     ///
     /// # Errors
@@ -150,5 +155,34 @@ mod tests {
         let mut written = Vec::new();
         write_all(&mut written, "a line\n").unwrap();
         assert_eq!(written, b"a line\n");
+    }
+}
+
+/// A bar for each part of a long work.
+#[derive(Debug)]
+pub struct PartBars {
+    printer: Printer,
+    bar: Option<ProgressBar>,
+}
+
+impl crate::experiment::Progress for PartBars {
+    fn begin(&mut self, pieces: usize, what: &'static str) {
+        let bar = self.printer.bar(pieces, what);
+        if bar.is_hidden() {
+            self.printer.progress(&format!("{pieces} {what} …"));
+        }
+        self.bar = Some(bar);
+    }
+
+    fn step(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.inc(1);
+        }
+    }
+
+    fn end(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
     }
 }

@@ -1,0 +1,143 @@
+//! What each method is, as settings of the agent or as a baseline of its own.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Instant;
+
+use coin::agent::{AgentSettings, Reinference};
+use coin::baselines::{frequency, last_user};
+use coin::calibration::Thresholds;
+use coin::owners::OwnerSet;
+use coin::sharing::ShareThresholds;
+use coin::usage::UsageEvent;
+use coin_schemas::experiment::Method;
+use coin_schemas::household::ObjectId;
+use coin_schemas::report::{Cost, Gate, Withheld};
+
+use super::{Calibrations, JudgedHome, actowl};
+use crate::client::ServerAddress;
+use crate::driver::Unobserved;
+use crate::home::Home;
+use crate::model::ChatModel;
+use crate::person::SimulatedPerson;
+use crate::run::{RunError, drive};
+
+/// What came of one run of one method.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct MethodOutcome {
+    /// The owner sets before the first question and after each one.
+    pub(super) history: Vec<BTreeMap<ObjectId, OwnerSet>>,
+    /// What it took.
+    pub(super) cost: Cost,
+}
+
+/// How the agent is set for a method; `None` for the methods that are not the agent's.
+struct Variant {
+    gate: Gate,
+    reinference: Reinference,
+    withheld: &'static [Withheld],
+}
+
+fn variant(method: Method) -> Option<Variant> {
+    let coin = Variant { gate: Gate::Risk, reinference: Reinference::AnsweredContext, withheld: &[] };
+    match method {
+        Method::Coin => Some(coin),
+        Method::CoinPaper => {
+            Some(Variant { gate: Gate::Paper, reinference: Reinference::EveryUnasked, ..coin })
+        }
+        Method::NlmapLlm => {
+            Some(Variant { gate: Gate::Never, withheld: &[Withheld::Background, Withheld::Usage], ..coin })
+        }
+        Method::NoQuestions => Some(Variant { gate: Gate::Never, ..coin }),
+        Method::NoBackground => Some(Variant { withheld: &[Withheld::Background], ..coin }),
+        Method::NoUsage => Some(Variant { withheld: &[Withheld::Usage], ..coin }),
+        Method::Actowl | Method::LastUser | Method::Frequency => None,
+    }
+}
+
+/// What a method withholds from the model while it compares with thresholds; `None` where it compares with none.
+pub(super) fn withheld(method: Method) -> Option<BTreeSet<Withheld>> {
+    let variant = variant(method).filter(|variant| variant.gate != Gate::Never)?;
+    Some(variant.withheld.iter().copied().collect())
+}
+
+/// Runs a method in a home of its own, from the captions to the last answer.
+pub(super) async fn run(
+    method: Method,
+    judged: &JudgedHome,
+    model: &dyn ChatModel,
+    calibrations: &Calibrations,
+    seed: u64,
+) -> Result<MethodOutcome, RunError> {
+    let started = Instant::now();
+    let mut outcome = match (method, variant(method)) {
+        (_, Some(variant)) => agent(variant, judged, model, calibrations, seed).await?,
+        (Method::Actowl, None) => actowl::run(judged, model, seed).await?,
+        (Method::Frequency, None) => heuristic(judged, |events, members| frequency(events, members)),
+        (_, None) => heuristic(judged, |events, _| last_user(events)),
+    };
+    outcome.cost.seconds = started.elapsed().as_secs_f64();
+    Ok(outcome)
+}
+
+async fn agent(
+    variant: Variant,
+    judged: &JudgedHome,
+    model: &dyn ChatModel,
+    calibrations: &Calibrations,
+    seed: u64,
+) -> Result<MethodOutcome, RunError> {
+    let withheld: BTreeSet<Withheld> = variant.withheld.iter().copied().collect();
+    let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
+    let settings = AgentSettings {
+        gate: variant.gate,
+        thresholds: calibrations
+            .get(&withheld)
+            .and_then(Option::as_ref)
+            .map_or(Thresholds::Uncalibrated, Thresholds::from),
+        share: ShareThresholds::default(),
+        max_questions: home.things.len(),
+        reinference: variant.reinference,
+    };
+    let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
+    let (outcome, cost) = drive(&home, settings, &withheld, model, &mut person, &mut Unobserved).await?;
+    home.server.close().await;
+    Ok(MethodOutcome { history: outcome.history, cost })
+}
+
+/// A baseline that only looks at who used each thing, up to the episode's present.
+fn heuristic(judged: &JudgedHome, owner: impl Fn(&[UsageEvent], usize) -> OwnerSet) -> MethodOutcome {
+    let owners = judged
+        .usage()
+        .into_iter()
+        .map(|(object, events)| (object, owner(&events, judged.loaded.roster.len())))
+        .collect();
+    MethodOutcome { history: vec![owners], cost: Cost::default() }
+}
+
+impl JudgedHome {
+    /// The events of every thing in time order, up to the episode's present.
+    fn usage(&self) -> BTreeMap<ObjectId, Vec<UsageEvent>> {
+        let mut events: BTreeMap<ObjectId, Vec<UsageEvent>> = self
+            .loaded
+            .episode
+            .objects
+            .iter()
+            .map(|object| (object.id.clone(), Vec::new()))
+            .collect();
+        let lines = self.loaded.captions.iter().zip(&self.loaded.observations);
+        for (line, observation) in lines.filter(|(_, seen)| seen.at <= self.loaded.episode.now) {
+            if let Some(of_thing) = events.get_mut(&line.object_id) {
+                of_thing.push(UsageEvent {
+                    at_seconds: coin::captions::civil_seconds(observation.at),
+                    actor: observation.actor,
+                    action: observation.action,
+                });
+            }
+        }
+        // The sort is stable: sightings of one minute keep the order of the file.
+        for of_thing in events.values_mut() {
+            of_thing.sort_by_key(|event| event.at_seconds);
+        }
+        events
+    }
+}
