@@ -8,7 +8,10 @@ use std::sync::Arc;
 use clap::{Parser, ValueEnum};
 use coin::calibration::too_few_samples;
 use coin_host::calibrate::{CalibrateSettings, calibrate_on, read_calibration};
-use coin_host::cli::{CalibrateArguments, Command, CommandLine, ExperimentArguments, GenerateCommand, MethodArgument, ModelName, RunArguments, default_levels};
+use coin_host::cli::{
+    CalibrateArguments, Command, CommandLine, ExperimentArguments, GenerateCommand, MethodArgument,
+    ModelName, RunArguments, default_levels,
+};
 use coin_host::experiment::{CoverageHomes, ExperimentSettings, check_folder, write};
 use coin_host::generate;
 use coin_host::model::ChatModel;
@@ -168,10 +171,10 @@ fn experiment(arguments: &ExperimentArguments) -> Result<(), Failure> {
         true => MethodArgument::value_variants().to_vec(),
         false => arguments.methods.clone(),
     };
-    let coverage = arguments.coverage_protocols.iter().map(|&protocol| CoverageHomes {
-        protocol,
-        households: arguments.coverage_homes,
-    });
+    let coverage = arguments
+        .coverage_protocols
+        .iter()
+        .map(|&protocol| CoverageHomes { protocol, households: arguments.coverage_homes });
     let settings = ExperimentSettings {
         episodes: arguments.episode.clone(),
         calibrate_on: arguments.calibrate_on.clone(),

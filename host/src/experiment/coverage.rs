@@ -12,7 +12,9 @@ use coin_schemas::experiment::{Coverage, Guarantee, Method};
 use tempfile::TempDir;
 
 use super::methods::{self, MethodOutcome};
-use super::{Calibrations, CoverageHomes, ExperimentError, ExperimentSettings, JudgedHome, Progress, load_home};
+use super::{
+    Calibrations, CoverageHomes, ExperimentError, ExperimentSettings, JudgedHome, Progress, load_home,
+};
 use crate::calibrate::{ScoredHome, score_homes};
 use crate::generate::{self, Protocol, RoutineSettings};
 use crate::model::ChatModel;
@@ -83,8 +85,7 @@ async fn score(
     progress: &mut (dyn Progress + Send),
 ) -> Result<Vec<ScoredHome>, ExperimentError> {
     progress.begin(homes.len(), "homes scored");
-    let scored =
-        score_homes(homes, History::Whole, &BTreeSet::new(), model, || progress.step()).await?;
+    let scored = score_homes(homes, History::Whole, &BTreeSet::new(), model, || progress.step()).await?;
     progress.end();
     Ok(scored)
 }
@@ -111,9 +112,8 @@ async fn of_kind(
     let homes = make(protocol, JUDGED_SEED, households, folder.path())?;
     let samples: Vec<CalibrationSample> =
         score(&homes, model, progress).await?.into_iter().flat_map(|home| home.samples).collect();
-    let count = |keeps: &dyn Fn(&CalibrationSample) -> bool| {
-        samples.iter().filter(|sample| keeps(sample)).count()
-    };
+    let count =
+        |keeps: &dyn Fn(&CalibrationSample) -> bool| samples.iter().filter(|sample| keeps(sample)).count();
     let lambda = promises.all_owners.lambda;
     let counts = [
         (Guarantee::AnyOwner, Some(NonconformityScore::AnyOwner), 1.0 - promises.any_owner.alpha, {

@@ -72,8 +72,8 @@ pub(super) async fn run(
     let mut outcome = match (method, variant(method)) {
         (_, Some(variant)) => agent(variant, judged, model, calibrations, seed).await?,
         (Method::Actowl, None) => actowl::run(judged, model, seed).await?,
-        (Method::Frequency, None) => heuristic(judged, |events, members| frequency(events, members)),
-        (_, None) => heuristic(judged, |events, _| last_user(events)),
+        (Method::Frequency, None) => heuristic(judged, frequency),
+        (_, None) => heuristic(judged, last_user),
     };
     outcome.cost.seconds = started.elapsed().as_secs_f64();
     Ok(outcome)
@@ -105,25 +105,16 @@ async fn agent(
 }
 
 /// A baseline that only looks at who used each thing, up to the episode's present.
-fn heuristic(judged: &JudgedHome, owner: impl Fn(&[UsageEvent], usize) -> OwnerSet) -> MethodOutcome {
-    let owners = judged
-        .usage()
-        .into_iter()
-        .map(|(object, events)| (object, owner(&events, judged.loaded.roster.len())))
-        .collect();
+fn heuristic(judged: &JudgedHome, owner: impl Fn(&[UsageEvent]) -> OwnerSet) -> MethodOutcome {
+    let owners = judged.usage().into_iter().map(|(object, events)| (object, owner(&events))).collect();
     MethodOutcome { history: vec![owners], cost: Cost::default() }
 }
 
 impl JudgedHome {
     /// The events of every thing in time order, up to the episode's present.
     fn usage(&self) -> BTreeMap<ObjectId, Vec<UsageEvent>> {
-        let mut events: BTreeMap<ObjectId, Vec<UsageEvent>> = self
-            .loaded
-            .episode
-            .objects
-            .iter()
-            .map(|object| (object.id.clone(), Vec::new()))
-            .collect();
+        let mut events: BTreeMap<ObjectId, Vec<UsageEvent>> =
+            self.loaded.episode.objects.iter().map(|object| (object.id.clone(), Vec::new())).collect();
         let lines = self.loaded.captions.iter().zip(&self.loaded.observations);
         for (line, observation) in lines.filter(|(_, seen)| seen.at <= self.loaded.episode.now) {
             if let Some(of_thing) = events.get_mut(&line.object_id) {

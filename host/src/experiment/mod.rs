@@ -34,7 +34,7 @@ use crate::model::counted::{Counted, TokenizerError};
 use crate::parallel;
 use crate::run::RunError;
 
-pub use tables::{method_name, summary, tables};
+pub use tables::{summary, tables};
 pub use write::{WriteError, check_folder, write};
 
 /// The Subset Accuracy whose reaching the Kaplan–Meier curves show.
@@ -116,7 +116,11 @@ impl ExperimentError {
             Self::Episode { source, .. } => source.is_refusal(),
             Self::Calibrate(error) => error.is_refusal(),
             Self::Twice { .. } => true,
-            Self::Calibration(_) | Self::Tokenizer(_) | Self::Folder(_) | Self::Write(_) | Self::Samples(_) => false,
+            Self::Calibration(_)
+            | Self::Tokenizer(_)
+            | Self::Folder(_)
+            | Self::Write(_)
+            | Self::Samples(_) => false,
         }
     }
 }
@@ -166,7 +170,10 @@ pub async fn run(
                             episode: home.folder.clone(),
                             source: Box::new(source),
                         })?;
-                    Ok(summary::Run { method, scored: summary::score(&outcome, trial, &home) })
+                    Ok::<_, ExperimentError>(summary::Run {
+                        method,
+                        scored: summary::score(&outcome, trial, &home),
+                    })
                 });
             }
         }
@@ -220,7 +227,9 @@ impl JudgedHome {
     /// The truth as owner sets. The loader has refused owners who are not of the household.
     fn true_owners(&self) -> BTreeMap<&ObjectId, OwnerSet> {
         let owners = self.truth.owners.iter();
-        owners.filter_map(|(object, owners)| Some((object, self.loaded.roster.owner_set(owners).ok()?))).collect()
+        owners
+            .filter_map(|(object, owners)| Some((object, self.loaded.roster.owner_set(owners).ok()?)))
+            .collect()
     }
 }
 
@@ -235,7 +244,8 @@ async fn calibrations(
         EMBEDDED_MODEL => Some(embedded_calibration().map_err(CalibrationFileError::BuiltIn)?),
         _ => None,
     };
-    let mut variants: BTreeSet<BTreeSet<Withheld>> = settings.methods.iter().filter_map(|&method| methods::withheld(method)).collect();
+    let mut variants: BTreeSet<BTreeSet<Withheld>> =
+        settings.methods.iter().filter_map(|&method| methods::withheld(method)).collect();
     variants.insert(BTreeSet::new());
     let mut calibrations = Calibrations::new();
     for withheld in variants {

@@ -41,9 +41,7 @@ pub(super) fn score(outcome: &MethodOutcome, trial: usize, home: &JudgedHome) ->
         let judged: Vec<Judged> = estimates
             .iter()
             .filter(|(object, _)| of_type.is_none() || types.get(*object).copied() == of_type)
-            .filter_map(|(object, &estimate)| {
-                truth.get(object).map(|&truth| Judged { estimate, truth })
-            })
+            .filter_map(|(object, &estimate)| truth.get(object).map(|&truth| Judged { estimate, truth }))
             .collect();
         summarise(&judged)
     };
@@ -83,7 +81,8 @@ pub(super) fn by_method(runs: &[Run]) -> BTreeMap<Method, MethodResults> {
 }
 
 fn results(scored: &[&Scored]) -> MethodResults {
-    let of = |figure: &dyn Fn(&Scored) -> f64| spread(&scored.iter().map(|run| figure(run)).collect::<Vec<_>>());
+    let of =
+        |figure: &dyn Fn(&Scored) -> f64| spread(&scored.iter().map(|run| figure(run)).collect::<Vec<_>>());
     let kinds: BTreeSet<UsageType> =
         scored.iter().flat_map(|run| run.run.by_usage_type.keys().copied()).collect();
     let summaries_of = |kind: UsageType| -> Vec<&MetricsSummary> {

@@ -7,17 +7,12 @@ use coin_schemas::experiment::{
 use coin_schemas::household::UsageType;
 
 use super::published;
+use crate::pages::experiment::method_name;
 use crate::pages::table::{Cell, Table};
 
 /// The methods that the paper compares (Tables 2 to 5), in its order.
-const COMPARED: [Method; 6] = [
-    Method::Actowl,
-    Method::NlmapLlm,
-    Method::LastUser,
-    Method::Frequency,
-    Method::CoinPaper,
-    Method::Coin,
-];
+const COMPARED: [Method; 6] =
+    [Method::Actowl, Method::NlmapLlm, Method::LastUser, Method::Frequency, Method::CoinPaper, Method::Coin];
 
 /// Those of its ablation study (Table 6).
 const ABLATED: [Method; 5] =
@@ -35,27 +30,9 @@ const ASTERISK: &str = "Ours, mean ± standard deviation over all runs; in brack
                         asterisk: different from COIN (default gate) by a Mann–Whitney U test with Holm's \
                         correction, p < 0.05.";
 
-/// How a method is called in tables and figures.
-pub fn method_name(method: Method) -> &'static str {
-    match method {
-        Method::Coin => "COIN (default gate)",
-        Method::CoinPaper => "COIN (the paper's gate)",
-        Method::Actowl => "ActOwL",
-        Method::NlmapLlm => "NLMap + model",
-        Method::LastUser => "Last-User (Tan et al.)",
-        Method::Frequency => "Frequency (Wu et al.)",
-        Method::NoQuestions => "COIN without questions",
-        Method::NoBackground => "COIN without background",
-        Method::NoUsage => "COIN without usage",
-    }
-}
-
 /// All tables, in the order in which they are read.
 pub fn tables(results: &ExperimentResults) -> Vec<Table> {
-    let mut tables = vec![
-        accuracy(results, "Table 2. All things", None),
-        questions_and_cost(results),
-    ];
+    let mut tables = vec![accuracy(results, "Table 2. All things", None), questions_and_cost(results)];
     for (title, usage_type) in [
         ("Table 3. Things of a single user", UsageType::SingleUser),
         ("Table 4. Things that are borrowed now and then", UsageType::TemporarySharing),
@@ -72,7 +49,10 @@ pub fn tables(results: &ExperimentResults) -> Vec<Table> {
     tables
 }
 
-fn present<'a>(results: &'a ExperimentResults, methods: &'a [Method]) -> impl Iterator<Item = (Method, &'a MethodResults)> {
+fn present<'a>(
+    results: &'a ExperimentResults,
+    methods: &'a [Method],
+) -> impl Iterator<Item = (Method, &'a MethodResults)> {
     methods.iter().filter_map(|&method| Some((method, results.methods.get(&method)?)))
 }
 
@@ -194,9 +174,8 @@ fn questions(method: Method, of_method: &MethodResults) -> String {
 
 /// A count with its published counterpart, thousands apart.
 fn counted(ours: Spread, published: Option<Spread>, decimals: usize) -> String {
-    let show = |spread: Spread| {
-        format!("{} ± {}", thousands(spread.mean, decimals), thousands(spread.sd, decimals))
-    };
+    let show =
+        |spread: Spread| format!("{} ± {}", thousands(spread.mean, decimals), thousands(spread.sd, decimals));
     match published {
         Some(published) => format!("{} ({})", show(ours), show(published)),
         None => show(ours),
@@ -205,7 +184,8 @@ fn counted(ours: Spread, published: Option<Spread>, decimals: usize) -> String {
 
 fn thousands(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
-    let (whole, rest) = text.split_once('.').map_or((text.as_str(), None), |(whole, rest)| (whole, Some(rest)));
+    let (whole, rest) =
+        text.split_once('.').map_or((text.as_str(), None), |(whole, rest)| (whole, Some(rest)));
     let mut grouped = String::new();
     for (place, digit) in whole.chars().enumerate() {
         if place > 0 && (whole.len() - place).is_multiple_of(3) {
@@ -310,7 +290,8 @@ fn coverage(coverage: &[Coverage]) -> Table {
 fn kruskal_wallis(results: &ExperimentResults) -> Table {
     Table {
         title: "Kruskal–Wallis tests over all methods".to_owned(),
-        note: "At the last step, over all things. A run is one method in one trial of one episode.".to_owned(),
+        note: "At the last step, over all things. A run is one method in one trial of one episode."
+            .to_owned(),
         header: header(&["Metric", "H", "Degrees of freedom", "p"]),
         rows: METRICS
             .iter()

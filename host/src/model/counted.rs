@@ -10,7 +10,9 @@ use async_trait::async_trait;
 use thiserror::Error;
 use tiktoken_rs::{CoreBPE, o200k_base};
 
-use super::{ChatModel, ChatReply, ChatRequest, Message, ModelError, ReplyFormat, TokenUsage, ToolDefinition};
+use super::{
+    ChatModel, ChatReply, ChatRequest, Message, ModelError, ReplyFormat, TokenUsage, ToolDefinition,
+};
 
 /// What the frame of a message takes beside its text, in tokens (the chat form of the models that use o200k).
 const TOKENS_PER_MESSAGE: u64 = 3;
@@ -61,7 +63,9 @@ impl Counted {
     fn message(&self, message: &Message) -> u64 {
         TOKENS_PER_MESSAGE
             + match message {
-                Message::System { text } | Message::User { text } | Message::Tool { text, .. } => self.count(text),
+                Message::System { text } | Message::User { text } | Message::Tool { text, .. } => {
+                    self.count(text)
+                }
                 Message::Assistant { text, tool_calls } => self.reply(text.as_deref(), tool_calls),
             }
     }
