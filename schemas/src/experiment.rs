@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::calibration::{Calibration, NonconformityScore};
+use crate::calibration::Calibration;
 use crate::household::UsageType;
 use crate::report::MetricsSummary;
 
@@ -253,10 +253,6 @@ pub struct Coverage {
     pub protocol: String,
     /// What was promised.
     pub guarantee: Guarantee,
-    /// The nonconformity score of Γ(o), where that is what was promised about.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "NonconformityScore")]
-    pub score: Option<NonconformityScore>,
     /// The promised share: at least this for a prediction set, at most this for what is wrong.
     pub promised: f64,
     /// How many households were judged.
@@ -271,4 +267,10 @@ pub struct Coverage {
     pub low: f64,
     /// Its upper end.
     pub high: f64,
+    /// The mean share over random splits of all homes of this kind into homes that thresholds are made from and homes
+    /// that are judged. A promise is one about this mean; a single set of calibration homes may lie beside it. Only
+    /// where the homes that were calibrated on are of the same kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
+    pub over_splits: Option<f64>,
 }

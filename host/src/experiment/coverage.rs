@@ -4,11 +4,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use coin::calibration::{CalibrationSample, Provenance, calibrate};
+use coin::calibration::{CalibrationError, CalibrationSample, Provenance, calibrate};
 use coin::conformal::{label_set, split};
 use coin::statistics::clopper_pearson;
 use coin_schemas::calibration::{Calibration, History, NonconformityScore};
 use coin_schemas::experiment::{Coverage, Guarantee, Method};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 use tempfile::TempDir;
 
 use super::methods::{self, MethodOutcome};
@@ -30,11 +33,63 @@ const JUDGED_SEED: u64 = 9001;
 /// The share of intervals that hold what they are about.
 const INTERVAL_LEVEL: f64 = 0.95;
 
+/// How often the homes are split anew, and the seed of the splits.
+const SPLITS: usize = 200;
+const SPLIT_SEED: u64 = 1;
+
 /// Thresholds with both nonconformity scores, from the same homes.
 struct Promises {
     any_owner: Calibration,
     all_owners: Calibration,
 }
+
+impl Promises {
+    fn from_homes<'a>(
+        homes: impl Iterator<Item = &'a ScoredHome> + Clone,
+        settings: &ExperimentSettings,
+        model: &str,
+    ) -> Result<Self, CalibrationError> {
+        let samples: Vec<CalibrationSample> =
+            homes.clone().flat_map(|home| home.samples.iter().cloned()).collect();
+        let provenance = Provenance {
+            model: model.to_owned(),
+            episodes: homes.map(|home| home.name.clone()).collect(),
+            history: History::Whole,
+            withheld: BTreeSet::new(),
+        };
+        let with = |score| calibrate(provenance.clone(), &samples, settings.levels, score);
+        Ok(Self {
+            any_owner: with(NonconformityScore::AnyOwner)?,
+            all_owners: with(NonconformityScore::AllOwners)?,
+        })
+    }
+
+    /// Whether what a guarantee is about is so for a thing.
+    fn holds(&self, guarantee: Guarantee, sample: &CalibrationSample) -> bool {
+        let members = |calibration: &Calibration| split::prediction_set(&sample.scores, calibration.q_alpha);
+        match guarantee {
+            Guarantee::AnyOwner => !members(&self.any_owner).intersection(sample.owners).is_empty(),
+            Guarantee::AllOwners => sample.owners.is_subset(members(&self.all_owners)),
+            Guarantee::OwnerSet => label_set::prediction_set(&sample.distribution, self.all_owners.q_set)
+                .contains(&sample.owners),
+            Guarantee::SettledWrong | Guarantee::WrongInTheEnd => {
+                let (owners, confidence) = sample.distribution.best();
+                confidence >= self.all_owners.lambda && owners != sample.owners
+            }
+        }
+    }
+
+    fn promised(&self, guarantee: Guarantee) -> f64 {
+        match guarantee {
+            Guarantee::AnyOwner | Guarantee::AllOwners | Guarantee::OwnerSet => 1.0 - self.all_owners.alpha,
+            Guarantee::SettledWrong | Guarantee::WrongInTheEnd => self.all_owners.risk,
+        }
+    }
+}
+
+/// What is known before a question is asked.
+const AT_ONCE: [Guarantee; 4] =
+    [Guarantee::AnyOwner, Guarantee::AllOwners, Guarantee::OwnerSet, Guarantee::SettledWrong];
 
 /// Counts how often every guarantee held, for each kind of home.
 pub(super) async fn measure(
@@ -45,38 +100,18 @@ pub(super) async fn measure(
     if settings.coverage.is_empty() {
         return Ok(Vec::new());
     }
-    let promises = promises(settings, model, progress).await?;
-    let mut coverage = Vec::new();
-    for &homes in &settings.coverage {
-        coverage.extend(of_kind(homes, &promises, settings.seed, model, progress).await?);
-    }
-    Ok(coverage)
-}
-
-async fn promises(
-    settings: &ExperimentSettings,
-    model: &Arc<dyn ChatModel>,
-    progress: &mut (dyn Progress + Send),
-) -> Result<Promises, ExperimentError> {
     let folder = TempDir::new()?;
-    let homes = match settings.calibrate_on.is_empty() {
+    let calibrated_on = match settings.calibrate_on.is_empty() {
         true => make(Protocol::Week, CALIBRATION_SEED, CALIBRATION_HOMES, folder.path())?,
         false => settings.calibrate_on.clone(),
     };
-    let scored = score(&homes, model, progress).await?;
-    let samples: Vec<CalibrationSample> =
-        scored.iter().flat_map(|home| home.samples.iter().cloned()).collect();
-    let provenance = Provenance {
-        model: model.name().to_owned(),
-        episodes: scored.into_iter().map(|home| home.name).collect(),
-        history: History::Whole,
-        withheld: BTreeSet::new(),
-    };
-    let with = |score| calibrate(provenance.clone(), &samples, settings.levels, score);
-    Ok(Promises {
-        any_owner: with(NonconformityScore::AnyOwner)?,
-        all_owners: with(NonconformityScore::AllOwners)?,
-    })
+    let calibrated_on = score(&calibrated_on, model, progress).await?;
+    let promises = Promises::from_homes(calibrated_on.iter(), settings, model.name())?;
+    let mut coverage = Vec::new();
+    for &homes in &settings.coverage {
+        coverage.extend(of_kind(homes, settings, &calibrated_on, &promises, model, progress).await?);
+    }
+    Ok(coverage)
 }
 
 async fn score(
@@ -103,64 +138,70 @@ fn make(protocol: Protocol, seed: u64, count: usize, folder: &Path) -> Result<Ve
 
 async fn of_kind(
     CoverageHomes { protocol, households }: CoverageHomes,
+    settings: &ExperimentSettings,
+    calibrated_on: &[ScoredHome],
     promises: &Promises,
-    seed: u64,
     model: &Arc<dyn ChatModel>,
     progress: &mut (dyn Progress + Send),
 ) -> Result<Vec<Coverage>, ExperimentError> {
     let folder = TempDir::new()?;
     let homes = make(protocol, JUDGED_SEED, households, folder.path())?;
-    let samples: Vec<CalibrationSample> =
-        score(&homes, model, progress).await?.into_iter().flat_map(|home| home.samples).collect();
-    let count =
-        |keeps: &dyn Fn(&CalibrationSample) -> bool| samples.iter().filter(|sample| keeps(sample)).count();
-    let lambda = promises.all_owners.lambda;
-    let counts = [
-        (Guarantee::AnyOwner, Some(NonconformityScore::AnyOwner), 1.0 - promises.any_owner.alpha, {
-            let q_alpha = promises.any_owner.q_alpha;
-            count(&|sample| {
-                let set = split::prediction_set(&sample.scores, q_alpha);
-                !set.intersection(sample.owners).is_empty()
-            })
-        }),
-        (Guarantee::AllOwners, Some(NonconformityScore::AllOwners), 1.0 - promises.all_owners.alpha, {
-            let q_alpha = promises.all_owners.q_alpha;
-            count(&|sample| sample.owners.is_subset(split::prediction_set(&sample.scores, q_alpha)))
-        }),
-        (Guarantee::OwnerSet, None, 1.0 - promises.all_owners.alpha, {
-            let q_set = promises.all_owners.q_set;
-            count(&|sample| label_set::prediction_set(&sample.distribution, q_set).contains(&sample.owners))
-        }),
-        (Guarantee::SettledWrong, None, promises.all_owners.risk, {
-            count(&|sample| {
-                let (owners, confidence) = sample.distribution.best();
-                confidence >= lambda && owners != sample.owners
-            })
-        }),
-    ];
-    let row = |guarantee, score, promised, count: usize, things: usize| {
+    let judged = score(&homes, model, progress).await?;
+    let same_kind = protocol == Protocol::Week && settings.calibrate_on.is_empty();
+    let row = |guarantee, count: usize, things: usize, over_splits| {
         let (low, high) = clopper_pearson(count, things, INTERVAL_LEVEL);
-        let share = count as f64 / things.max(1) as f64;
         Coverage {
             protocol: protocol.name().to_owned(),
             guarantee,
-            score,
-            promised,
+            promised: promises.promised(guarantee),
             households,
             things,
             count,
-            share,
+            share: count as f64 / things.max(1) as f64,
             low,
             high,
+            over_splits,
         }
     };
-    let mut rows: Vec<Coverage> = counts
-        .into_iter()
-        .map(|(guarantee, score, promised, count)| row(guarantee, score, promised, count, samples.len()))
-        .collect();
-    let (wrong, things) = wrong_in_the_end(&homes, promises, seed, model, progress).await?;
-    rows.push(row(Guarantee::WrongInTheEnd, None, promises.all_owners.risk, wrong, things));
+    let mut rows = Vec::new();
+    for guarantee in AT_ONCE {
+        let things = judged.iter().flat_map(|home| &home.samples);
+        let count = things.clone().filter(|sample| promises.holds(guarantee, sample)).count();
+        rows.push(row(guarantee, count, things.count(), None));
+    }
+    if same_kind {
+        let means = over_splits(calibrated_on, &judged, settings, model.name())?;
+        for (row, mean) in rows.iter_mut().zip(means) {
+            row.over_splits = Some(mean);
+        }
+    }
+    let (wrong, things) = wrong_in_the_end(&homes, promises, settings.seed, model, progress).await?;
+    rows.push(row(Guarantee::WrongInTheEnd, wrong, things, None));
     Ok(rows)
+}
+
+/// The mean share of every guarantee of [`AT_ONCE`] over random splits: as many homes as were calibrated on make
+/// thresholds, the others are judged by them.
+fn over_splits(
+    calibrated_on: &[ScoredHome],
+    judged: &[ScoredHome],
+    settings: &ExperimentSettings,
+    model: &str,
+) -> Result<[f64; AT_ONCE.len()], ExperimentError> {
+    let mut homes: Vec<&ScoredHome> = calibrated_on.iter().chain(judged).collect();
+    let mut generator = ChaCha8Rng::seed_from_u64(SPLIT_SEED);
+    let mut sums = [0.0; AT_ONCE.len()];
+    for _ in 0..SPLITS {
+        homes.shuffle(&mut generator);
+        let (calibration, rest) = homes.split_at(calibrated_on.len());
+        let promises = Promises::from_homes(calibration.iter().copied(), settings, model)?;
+        let things: Vec<&CalibrationSample> = rest.iter().flat_map(|home| &home.samples).collect();
+        for (sum, guarantee) in sums.iter_mut().zip(AT_ONCE) {
+            let count = things.iter().filter(|sample| promises.holds(guarantee, sample)).count();
+            *sum += count as f64 / things.len().max(1) as f64;
+        }
+    }
+    Ok(sums.map(|sum| sum / SPLITS as f64))
 }
 
 /// Lets COIN ask in every home, and counts what is wrong when it is done.

@@ -65,9 +65,9 @@ impl BarChart {
                 @for (value, text) in super::ticks(0.0, self.highest) {
                     @let x = unit(plot.x.at(value));
                     line.grid x1=(x) x2=(x) y1="20" y2=(unit(bottom)) {}
-                    text.quiet x=(x) y=(unit(bottom + 18.0)) text-anchor="middle" { (text) }
+                    text.faint x=(x) y=(unit(bottom + 18.0)) text-anchor="middle" { (text) }
                 }
-                text.quiet x=(unit((plot.x.low_at + plot.x.high_at) / 2.0)) y=(unit(bottom + 38.0)) text-anchor="middle" {
+                text.faint x=(unit((plot.x.low_at + plot.x.high_at) / 2.0)) y=(unit(bottom + 38.0)) text-anchor="middle" {
                     (self.label)
                 }
                 @for (group, height) in self.groups.iter().zip(heights) {
@@ -88,7 +88,7 @@ fn drawn(bar: &Bar, top: f64, plot: &Plot) -> Markup {
     let (low, high) = (plot.x.at(bar.value - bar.spread), plot.x.at(bar.value + bar.spread));
     let label_at = if bar.spread > 0.0 { end.max(high) } else { end };
     html! {
-        text.quiet x=(unit(start - 8.0)) y=(unit(middle + 4.5)) text-anchor="end" { (bar.name) }
+        text.faint x=(unit(start - 8.0)) y=(unit(middle + 4.5)) text-anchor="end" { (bar.name) }
         rect x=(unit(start)) y=(unit(top + 3.0)) width=(unit((end - start).max(1.0))) height=(unit(BAR - 6.0)) rx="2"
             fill=(bar.look.colour()) {}
         @if bar.spread > 0.0 {

@@ -57,9 +57,9 @@ impl IntervalChart {
                 @for (value, text) in ticks(scale.low, scale.high) {
                     @let x = unit(scale.at(value));
                     line.grid x1=(x) x2=(x) y1="10" y2=(unit(bottom)) {}
-                    text.quiet x=(x) y=(unit(bottom + 18.0)) text-anchor="middle" { (text) }
+                    text.faint x=(x) y=(unit(bottom + 18.0)) text-anchor="middle" { (text) }
                 }
-                text.quiet x=(unit(WIDTH / 2.0)) y=(unit(bottom + 38.0)) text-anchor="middle" { (self.label) }
+                text.faint x=(unit(WIDTH / 2.0)) y=(unit(bottom + 38.0)) text-anchor="middle" { (self.label) }
                 @for (place, row) in self.rows.iter().enumerate() {
                     @let top = 20.0 + place as f64 * ROW;
                     @let y = top + 28.0;

@@ -26,7 +26,7 @@ svg.chart{--ink:#1c2430;--muted:#566070;--line:#d9dee5;--c0:#0b62a3;--c1:#c4500a
 --c4:#7a6200;--c5:#4a5ac0;--c6:#2f7f8c;--c7:#8a4b2a;--c8:#5b6472;font:13px system-ui,'Segoe UI',sans-serif}\
 @media(prefers-color-scheme:dark){svg.chart{--ink:#e6eaf0;--muted:#a2adbb;--line:#343d49;--c0:#5fb4f2;--c1:#ff9a56;\
 --c2:#3ecfa2;--c3:#f09bcb;--c4:#e2c44e;--c5:#a3aeff;--c6:#6fd3df;--c7:#d9a07c;--c8:#aab4c1}}\
-svg.chart text{fill:var(--ink)}svg.chart .quiet{fill:var(--muted)}svg.chart .grid{stroke:var(--line)}\
+svg.chart text{fill:var(--ink)}svg.chart .faint{fill:var(--muted)}svg.chart .grid{stroke:var(--line)}\
 svg.chart .axis{stroke:var(--muted)}";
 
 /// How a method looks in every chart.
@@ -109,14 +109,14 @@ impl Plot {
             @for (value, text) in ticks(self.y.low, self.y.high) {
                 @let y = unit(self.y.at(value));
                 line.grid x1=(unit(left)) x2=(unit(right)) y1=(y) y2=(y) {}
-                text.quiet x=(unit(left - 8.0)) y=(unit(self.y.at(value) + 4.5)) text-anchor="end" { (text) }
+                text.faint x=(unit(left - 8.0)) y=(unit(self.y.at(value) + 4.5)) text-anchor="end" { (text) }
             }
             @for (value, text) in ticks(self.x.low, self.x.high) {
-                text.quiet x=(unit(self.x.at(value))) y=(unit(bottom + 18.0)) text-anchor="middle" { (text) }
+                text.faint x=(unit(self.x.at(value))) y=(unit(bottom + 18.0)) text-anchor="middle" { (text) }
             }
             line.axis x1=(unit(left)) x2=(unit(right)) y1=(unit(bottom)) y2=(unit(bottom)) {}
-            text.quiet x=(unit((left + right) / 2.0)) y=(unit(bottom + 38.0)) text-anchor="middle" { (x_label) }
-            text.quiet x=(unit(left - 40.0)) y=(unit(top - 12.0)) { (y_label) }
+            text.faint x=(unit((left + right) / 2.0)) y=(unit(bottom + 38.0)) text-anchor="middle" { (x_label) }
+            text.faint x=(unit(left - 40.0)) y=(unit(top - 12.0)) { (y_label) }
         }
     }
 }

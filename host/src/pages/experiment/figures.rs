@@ -9,6 +9,7 @@ use crate::pages::chart::{
     Bar, BarChart, BarGroup, Dot, Interval, IntervalChart, LineChart, Look, Point, ScatterChart, Series,
     Shape,
 };
+use crate::pages::thousands;
 
 /// A figure in a file of its own.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -202,25 +203,30 @@ fn questions_and_accuracy(results: &ExperimentResults) -> Figure {
 
 fn survival(results: &ExperimentResults) -> Figure {
     let title = "Reaching the target";
-    let drawn: Vec<Series> =
-        present(results, &[Method::Coin, Method::CoinPaper, Method::Actowl, Method::NoUsage])
-            .map(|(method, of)| {
-                let start = Point { x: 0.0, y: 0.0, spread: 0.0 };
-                let steps = of.survival.iter().map(|step| Point {
-                    x: step.step as f64,
-                    y: 1.0 - step.survival,
-                    spread: 0.0,
-                });
-                let censored = of.survival.iter().filter(|step| step.censored > 0);
-                Series {
-                    name: method_name(method).to_owned(),
-                    look: look(method),
-                    shape: Shape::Steps,
-                    points: std::iter::once(start).chain(steps).collect(),
-                    strokes: censored.map(|step| (step.step as f64, 1.0 - step.survival)).collect(),
-                }
-            })
-            .collect();
+    let shown = [Method::Coin, Method::CoinPaper, Method::Actowl, Method::NoUsage];
+    let last_steps = present(results, &shown).filter_map(|(_, of)| of.survival.last());
+    let last_step = last_steps.map(|step| step.step).max().unwrap_or(0) as f64;
+    let drawn: Vec<Series> = present(results, &shown)
+        .map(|(method, of)| {
+            let start = Point { x: 0.0, y: 0.0, spread: 0.0 };
+            let steps = of.survival.iter().map(|step| Point {
+                x: step.step as f64,
+                y: 1.0 - step.survival,
+                spread: 0.0,
+            });
+            // A run that has reached the target stays there.
+            let end =
+                of.survival.last().map(|step| Point { x: last_step, y: 1.0 - step.survival, spread: 0.0 });
+            let censored = of.survival.iter().filter(|step| step.censored > 0);
+            Series {
+                name: method_name(method).to_owned(),
+                look: look(method),
+                shape: Shape::Steps,
+                points: std::iter::once(start).chain(steps).chain(end).collect(),
+                strokes: censored.map(|step| (step.step as f64, 1.0 - step.survival)).collect(),
+            }
+        })
+        .collect();
     let chart = LineChart {
         title: title.to_owned(),
         description: described(&drawn),
@@ -296,7 +302,7 @@ fn cost(results: &ExperimentResults) -> Option<Figure> {
             look: look(method),
             value: part(value),
             spread: 0.0,
-            label: format!("{value:.0}"),
+            label: thousands(value, 0),
         };
         BarGroup {
             name: name.to_owned(),
