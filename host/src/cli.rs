@@ -10,7 +10,7 @@ use coin_schemas::experiment::Method;
 use coin_schemas::report::{Gate, Reinference, Withheld};
 
 use crate::client::ServerAddress;
-use crate::generate::{GenerateArguments, Protocol};
+use crate::generate::{GenerateArguments, HomerArguments, Protocol};
 use crate::run::Answers;
 
 const EXAMPLES: &str = "\
@@ -143,6 +143,8 @@ impl From<MethodArgument> for Method {
 pub enum GenerateCommand {
     /// Households that live by our own routines
     Routine(GenerateArguments),
+    /// Households that live by schedules sampled from the HOMER data set
+    Homer(HomerArguments),
 }
 
 /// Arguments of `host --episode`.

@@ -42,6 +42,9 @@ fn main() -> ExitCode {
         None => run(&arguments.run),
         Some(Command::Calibrate(arguments)) => calibrate(arguments),
         Some(Command::Experiment(arguments)) => experiment(arguments),
+        Some(Command::Generate(GenerateCommand::Homer(arguments))) => {
+            generate::run_homer(arguments).map_err(|error| Failure::Refused(format!("{error:#}")))
+        }
         Some(Command::Generate(GenerateCommand::Routine(arguments))) => {
             generate::run(arguments).map_err(|error| Failure::Refused(format!("{error:#}")))
         }

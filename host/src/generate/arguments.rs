@@ -1,11 +1,12 @@
-//! `host generate routine`: what the command takes and does.
+//! `host generate`: what the commands take and do.
 
 use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
 
-use super::{Protocol, RoutineSettings, generate, write};
+use super::homer::HomerData;
+use super::{GeneratedEpisode, Protocol, RoutineSettings, generate, generate_homer, write};
 
 /// Writes homes of our own making: people with their week, their things, what was seen of it, and the truth.
 #[derive(Debug, Clone, PartialEq, Eq, Args)]
@@ -24,14 +25,38 @@ pub struct GenerateArguments {
     pub out: PathBuf,
 }
 
-/// Writes the homes. A failure names the folder, and the homes before it are there.
+/// Writes homes that live by schedules sampled from the HOMER data set.
+#[derive(Debug, Clone, PartialEq, Eq, Args)]
+pub struct HomerArguments {
+    /// The data set's folder: the one that holds executableScriptsByActivity and personaBasedSchedules
+    #[arg(long, value_name = "DIR")]
+    pub data: PathBuf,
+    /// Which homes
+    #[command(flatten)]
+    pub homes: GenerateArguments,
+}
+
+/// Writes homes of our own routines. A failure names the folder, and the homes before it are there.
 pub fn run(arguments: &GenerateArguments) -> anyhow::Result<()> {
+    write_homes(arguments, |settings| Ok(generate(settings)))
+}
+
+/// Writes homes that live by HOMER.
+pub fn run_homer(arguments: &HomerArguments) -> anyhow::Result<()> {
+    let data = HomerData::read(&arguments.data)?;
+    write_homes(&arguments.homes, |settings| Ok(generate_homer(settings, &data)?))
+}
+
+fn write_homes(
+    arguments: &GenerateArguments,
+    home: impl Fn(&RoutineSettings) -> anyhow::Result<GeneratedEpisode>,
+) -> anyhow::Result<()> {
     for step in 0..arguments.count {
         let seed = arguments
             .seed
             .checked_add(step)
             .context("the seeds run past the largest one; give a smaller --seed or --count")?;
-        let episode = generate(&RoutineSettings { seed, protocol: arguments.protocol });
+        let episode = home(&RoutineSettings { seed, protocol: arguments.protocol })?;
         let folder = match arguments.count {
             1 => arguments.out.clone(),
             _ => arguments.out.join(&episode.episode.name),

@@ -22,6 +22,17 @@ pub(super) struct Belonging {
     pub(super) others: Vec<usize>,
     /// The paper's p_borrow: how probably a session is a borrower's, where the thing is temporarily shared.
     pub(super) borrow: f64,
+    /// Whose it was before, where it was handed down.
+    pub(super) before: Option<HandDown>,
+}
+
+/// A thing changes hands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct HandDown {
+    /// The first day of the present owner.
+    pub(super) day: usize,
+    owner: usize,
+    others: Vec<usize>,
 }
 
 /// A usage type with a number of owners.
@@ -54,6 +65,17 @@ pub(super) fn draw(
     generator: &mut ChaCha8Rng,
 ) -> Vec<Belonging> {
     let things = choose_things(parameters, generator);
+    assign(things, people, parameters, role_fit, generator)
+}
+
+/// Draws the owners of these things.
+pub(super) fn assign(
+    things: Vec<&'static Thing>,
+    people: &[Person],
+    parameters: &RoutineParameters,
+    role_fit: f64,
+    generator: &mut ChaCha8Rng,
+) -> Vec<Belonging> {
     let slots = match parameters.structure {
         Structure::Paper => {
             PAPER_SLOTS.iter().flat_map(|&(count, slot)| std::iter::repeat_n(slot, count)).collect()
@@ -70,10 +92,33 @@ pub(super) fn draw(
         let owners = choose_owners(people, thing, slot.owners, &alike, role_fit, generator);
         let others = (0..people.len()).filter(|person| !owners.contains(person)).collect();
         let borrow = between(&parameters.borrow, generator);
-        belongings.push(Belonging { thing, usage_type: slot.usage_type, owners, others, borrow });
+        belongings.push(Belonging {
+            thing,
+            usage_type: slot.usage_type,
+            owners,
+            others,
+            borrow,
+            before: None,
+        });
     }
     belongings.shuffle(generator);
     belongings
+}
+
+/// Lets a share of the things of one owner be somebody else's until a day about half way.
+pub(super) fn hand_down(belongings: &mut [Belonging], share: f64, days: usize, generator: &mut ChaCha8Rng) {
+    for belonging in belongings.iter_mut().filter(|belonging| belonging.owners.len() == 1) {
+        if belonging.usage_type == UsageType::MultiUserSharing || !generator.random_bool(share) {
+            continue;
+        }
+        let day = generator.random_range(days * 2 / 5..=days * 3 / 5);
+        if let Some(&owner) = belonging.others.choose(generator) {
+            let everyone = belonging.owners.iter().chain(&belonging.others).copied();
+            let mut others: Vec<usize> = everyone.filter(|&person| person != owner).collect();
+            others.sort_unstable();
+            belonging.before = Some(HandDown { day, owner, others });
+        }
+    }
 }
 
 fn choose_things(parameters: &RoutineParameters, generator: &mut ChaCha8Rng) -> Vec<&'static Thing> {
@@ -178,19 +223,35 @@ impl Belonging {
     /// - temporary sharing: a borrower with probability p_borrow, every one equally likely, else an owner, every
     ///   one equally likely;
     /// - multi-user sharing: the owner who has had the fewest sessions, ties drawn.
-    pub(super) fn next_user(&self, sessions: &[usize], generator: &mut ChaCha8Rng) -> Option<usize> {
+    ///
+    /// Before a thing is handed down, the owner is the earlier one.
+    pub(super) fn next_user(
+        &self,
+        day: usize,
+        sessions: &[usize],
+        generator: &mut ChaCha8Rng,
+    ) -> Option<usize> {
+        let (owners, others) = match &self.before {
+            Some(before) if day < before.day => (std::slice::from_ref(&before.owner), &before.others),
+            _ => (self.owners.as_slice(), &self.others),
+        };
         match self.usage_type {
-            UsageType::SingleUser => self.owners.choose(generator).copied(),
+            UsageType::SingleUser => owners.choose(generator).copied(),
             UsageType::TemporarySharing => {
-                let borrowed = !self.others.is_empty() && generator.random_bool(self.borrow);
-                if borrowed { &self.others } else { &self.owners }.choose(generator).copied()
+                let borrowed = !others.is_empty() && generator.random_bool(self.borrow);
+                if borrowed { others } else { owners }.choose(generator).copied()
             }
             UsageType::MultiUserSharing => {
-                let fewest = self.owners.iter().map(|&owner| sessions[owner]).min()?;
+                let fewest = owners.iter().map(|&owner| sessions[owner]).min()?;
                 let next: Vec<usize> =
-                    self.owners.iter().copied().filter(|&owner| sessions[owner] == fewest).collect();
+                    owners.iter().copied().filter(|&owner| sessions[owner] == fewest).collect();
                 next.choose(generator).copied()
             }
         }
+    }
+
+    /// Whether two days lie on the same side of a handing down.
+    pub(super) fn same_hands(&self, one: usize, other: usize) -> bool {
+        self.before.as_ref().is_none_or(|before| (one < before.day) == (other < before.day))
     }
 }

@@ -13,6 +13,7 @@ mod belongings;
 mod catalogue;
 mod features;
 mod floor_plan;
+pub mod homer;
 mod paper;
 mod parameters;
 mod people;
@@ -36,7 +37,7 @@ use coin_schemas::episode::{CaptionLine, Episode, EpisodeObject, Truth};
 use coin_schemas::household::{Background, ClassLabel, InvalidValue, ObjectId, Position, UserName};
 use coin_schemas::tools::display_name;
 
-pub use arguments::{GenerateArguments, run};
+pub use arguments::{GenerateArguments, HomerArguments, run, run_homer};
 pub use features::Feature;
 pub use parameters::{FirstDay, OwnerSetSizes, PeopleTemplate, Protocol, RoutineParameters, Structure};
 pub use write::{WriteError, write};
@@ -109,37 +110,38 @@ struct Story {
     first_day: Date,
 }
 
+/// Where the life of a home comes from.
+#[derive(Debug, Clone, Copy)]
+enum Routines<'a> {
+    /// Our own catalogue and week plans.
+    Own,
+    /// Schedules and scripts of the HOMER data set.
+    Homer(&'a homer::HomerData),
+}
+
+impl Routines<'_> {
+    /// The name of the kind of home with these routines.
+    fn kind(self, protocol: Protocol) -> String {
+        match self {
+            Self::Own => protocol.name().to_owned(),
+            Self::Homer(_) => format!("homer-{}", protocol.name()),
+        }
+    }
+}
+
 impl Story {
-    fn draw(settings: &RoutineSettings, parameters: &RoutineParameters) -> Self {
-        let random = |concern| stream(settings.protocol.name(), settings.seed, concern);
+    fn draw(settings: &RoutineSettings, parameters: &RoutineParameters, routines: Routines<'_>) -> Self {
+        let kind = routines.kind(settings.protocol);
+        let random = |concern| stream(&kind, settings.seed, concern);
         let habits = Habits::draw(parameters, &mut random(Stream::Habits));
         let people = people::draw(parameters.people, &mut random(Stream::People));
-        let belongings =
-            belongings::draw(&people, parameters, habits.role_fit, &mut random(Stream::Belongings));
         let days: Vec<DayKind> =
             (0..parameters.days).map(|day| day_kind(nth_day(habits.first_day, day.into()))).collect();
-        let plans = plan::week(&people, &days, &mut random(Stream::Plans));
-
-        let count = |belonging: &Belonging, generator: &mut ChaCha8Rng| {
-            sessions::session_count(
-                belonging.thing,
-                habits.busyness,
-                days.len(),
-                &parameters.sessions,
-                generator,
-            )
-        };
-        let generator = &mut random(Stream::Sessions);
-        let histories: Vec<ThingHistory> = match parameters.structure {
-            Structure::Paper => paper::histories(&belongings, &plans, count, generator),
-            Structure::Drawn => belongings
-                .iter()
-                .map(|belonging| {
-                    let sessions = count(belonging, generator);
-                    let lengths = sessions::session_lengths(sessions, generator);
-                    sessions::live(belonging, &lengths, &plans, generator)
-                })
-                .collect(),
+        let (belongings, histories) = match routines {
+            Routines::Own => own_life(&people, &days, parameters, &habits, random),
+            Routines::Homer(data) => {
+                homer::life(data, &people, parameters, habits.role_fit, days.len(), random)
+            }
         };
 
         let generator = &mut random(Stream::Sightings);
@@ -235,24 +237,86 @@ impl Story {
     }
 }
 
-/// Draws a home. Equal settings give equal episodes.
+/// What there is in a home with our own routines, and what happens to it.
+fn own_life(
+    people: &[Person],
+    days: &[DayKind],
+    parameters: &RoutineParameters,
+    habits: &Habits,
+    random: impl Fn(Stream) -> ChaCha8Rng,
+) -> (Vec<Belonging>, Vec<ThingHistory>) {
+    let mut belongings =
+        belongings::draw(people, parameters, habits.role_fit, &mut random(Stream::Belongings));
+    belongings::hand_down(
+        &mut belongings,
+        parameters.handed_down,
+        days.len(),
+        &mut random(Stream::HandDowns),
+    );
+    let plans = plan::week(people, days, &mut random(Stream::Plans));
+    let count = |belonging: &Belonging, generator: &mut ChaCha8Rng| {
+        sessions::session_count(belonging.thing, habits.busyness, days.len(), &parameters.sessions, generator)
+    };
+    let generator = &mut random(Stream::Sessions);
+    let histories: Vec<ThingHistory> = match parameters.structure {
+        Structure::Paper => paper::histories(&belongings, &plans, count, generator),
+        Structure::Drawn => belongings
+            .iter()
+            .map(|belonging| {
+                let sessions = count(belonging, generator);
+                let lengths = sessions::session_lengths(sessions, generator);
+                sessions::live(belonging, &lengths, &plans, generator)
+            })
+            .collect(),
+    };
+    (belongings, histories)
+}
+
+/// Draws a home with our own routines. Equal settings give equal episodes.
 pub fn generate(settings: &RoutineSettings) -> GeneratedEpisode {
+    generate_with(settings, Routines::Own)
+}
+
+/// Draws a home that lives by schedules sampled from HOMER. Equal settings and data give equal episodes.
+///
+/// # Errors
+/// If the protocol is one of a place that HOMER has no data of.
+pub fn generate_homer(
+    settings: &RoutineSettings,
+    data: &homer::HomerData,
+) -> Result<GeneratedEpisode, homer::HomerError> {
+    match settings.protocol {
+        Protocol::Office => Err(homer::HomerError::NoSuchPlace),
+        _ => Ok(generate_with(settings, Routines::Homer(data))),
+    }
+}
+
+fn generate_with(settings: &RoutineSettings, routines: Routines<'_>) -> GeneratedEpisode {
     let parameters = settings.protocol.parameters();
-    let story = Story::draw(settings, &parameters);
-    let random = |concern| stream(settings.protocol.name(), settings.seed, concern);
+    let story = Story::draw(settings, &parameters, routines);
+    let kind = routines.kind(settings.protocol);
+    let random = |concern| stream(&kind, settings.seed, concern);
     let captions = story.captions(parameters.paraphrased, &mut random(Stream::Words));
     let features = features::draw(&story.belongings, &mut random(Stream::Features));
     let last_day = nth_day(story.first_day, usize::from(parameters.days).saturating_sub(1));
     let episode = Episode {
-        name: format!("{}-{}", settings.protocol.name(), settings.seed),
+        name: format!("{kind}-{}", settings.seed),
         description: Some(format!(
-            "{} things of {} people over {} days, drawn by the routine generator (protocol {}, seed {}). The \
-             visual features are synthetic: they carry a sign of class and owner set and come from no camera.",
+            "{} things of {} people over {} days, drawn by the {} (protocol {}, seed {}). The \
+             visual features are synthetic: they carry a sign of class and owner set and come from no camera.{}",
             story.belongings.len(),
             story.people.len(),
             parameters.days,
+            match routines {
+                Routines::Own => "routine generator",
+                Routines::Homer(_) => "HOMER generator",
+            },
             settings.protocol.name(),
             settings.seed,
+            match routines {
+                Routines::Own => "",
+                Routines::Homer(_) => homer::LICENCE_NOTE,
+            },
         )),
         users: story.users(),
         objects: story.objects(),

@@ -21,11 +21,19 @@ pub enum Protocol {
     Office,
     /// Couples, and flats that four to eight people share
     OtherHomes,
+    /// As week, with 8 % of the sightings naming the wrong person
+    Mistaken,
+    /// As week, over forty days in which things are handed down
+    HandedDown,
+    /// Couples
+    Couple,
+    /// Flats that four to eight people share
+    SharedHouse,
 }
 
 impl Protocol {
     /// Every protocol.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 11] = [
         Self::Paper,
         Self::Week,
         Self::Borrowing,
@@ -33,6 +41,10 @@ impl Protocol {
         Self::Paraphrased,
         Self::Office,
         Self::OtherHomes,
+        Self::Mistaken,
+        Self::HandedDown,
+        Self::Couple,
+        Self::SharedHouse,
     ];
 
     /// The name on the command line and in reports.
@@ -45,6 +57,10 @@ impl Protocol {
             Self::Paraphrased => "paraphrased",
             Self::Office => "office",
             Self::OtherHomes => "other-homes",
+            Self::Mistaken => "mistaken",
+            Self::HandedDown => "handed-down",
+            Self::Couple => "couple",
+            Self::SharedHouse => "shared-house",
         }
     }
 
@@ -84,6 +100,14 @@ impl Protocol {
                 owner_set_sizes: OwnerSetSizes::OF_MANY,
                 ..week
             },
+            Self::Mistaken => RoutineParameters { mistaken: 0.08, ..week },
+            Self::HandedDown => RoutineParameters { days: 40, sessions: 8..=300, handed_down: 0.4, ..week },
+            Self::Couple => RoutineParameters { people: PeopleTemplate::Couple, ..week },
+            Self::SharedHouse => RoutineParameters {
+                people: PeopleTemplate::Flat { most: 8 },
+                owner_set_sizes: OwnerSetSizes::OF_MANY,
+                ..week
+            },
         }
     }
 }
@@ -99,6 +123,13 @@ pub enum PeopleTemplate {
     Office {
         /// How many.
         people: usize,
+    },
+    /// A couple.
+    Couple,
+    /// A flat shared by four or more.
+    Flat {
+        /// The most people in it.
+        most: usize,
     },
     /// A couple, or a flat shared by four or more.
     CoupleOrFlat {
@@ -173,6 +204,8 @@ pub struct RoutineParameters {
     pub busyness: Range<f64>,
     /// The probability that a session of a temporarily shared thing is a borrower's: p_borrow of the paper.
     pub borrow: Range<f64>,
+    /// The share of the things of one owner that somebody else owned until about half way through the history.
+    pub handed_down: f64,
     /// How far things belong to those whom they suit, 0 (not at all) to 1 (to nobody else).
     pub role_fit: Range<f64>,
     /// The probability that a thing of one owner lies in that person's own spot.
@@ -200,6 +233,7 @@ impl RoutineParameters {
             sessions: 2..=60,
             busyness: 0.8..1.5,
             borrow: 0.1..0.3,
+            handed_down: 0.0,
             role_fit: 0.0..0.9,
             cohesion: 0.45..0.75,
             mistaken: 0.0,

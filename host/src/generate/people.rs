@@ -159,6 +159,11 @@ pub(super) fn draw(template: PeopleTemplate, generator: &mut ChaCha8Rng) -> Vec<
         PeopleTemplate::PaperFamily => paper_family(),
         PeopleTemplate::Family => relatives(FAMILIES, generator),
         PeopleTemplate::Office { people } => colleagues(people, generator),
+        PeopleTemplate::Couple => relatives(COUPLES, generator),
+        PeopleTemplate::Flat { most } => {
+            let people = generator.random_range(4..=most);
+            flatmates(people, generator)
+        }
         PeopleTemplate::CoupleOrFlat { most } => {
             if generator.random_bool(0.4) {
                 relatives(COUPLES, generator)

@@ -19,10 +19,12 @@ pub(super) enum Stream {
     Features,
     Sightings,
     Words,
+    HandDowns,
+    Schedule,
 }
 
-/// The random numbers of one concern of one home. The key is the seed followed by the protocol's name, so that
-/// the same seed gives unrelated homes under two protocols.
+/// The random numbers of one concern of one home. The key is the seed followed by the name of the kind of home, so
+/// that the same seed gives unrelated homes of two kinds.
 pub(super) fn stream(protocol: &str, seed: u64, stream: Stream) -> ChaCha8Rng {
     let mut key = [0_u8; 32];
     key.iter_mut()

@@ -113,8 +113,10 @@ pub(super) fn live(
     wanted.sort_unstable();
     let mut counts = vec![0_usize; plans.len()];
     for (&length, day) in lengths.iter().zip(wanted) {
-        let placed = belonging.next_user(&counts, generator).and_then(|user| {
-            let session = find_time(belonging.thing, user, day, length, plans, &history.sessions, generator)?;
+        let placed = belonging.next_user(day, &counts, generator).and_then(|user| {
+            let session = find_time(belonging.thing, user, day, length, plans, &history.sessions, generator)
+                // A session that found no time on its day may have moved to one on which the thing was another's.
+                .filter(|session| belonging.same_hands(day, session.day))?;
             counts[user] += 1;
             Some(session)
         });

@@ -13,14 +13,14 @@ use rstest::rstest;
 use super::catalogue::{HOME, OFFICE, Thing};
 use super::sessions::Action;
 use super::sightings::Fate;
-use super::{GeneratedEpisode, Protocol, RoutineSettings, Story, WriteError, generate, write};
+use super::{GeneratedEpisode, Protocol, RoutineSettings, Routines, Story, WriteError, generate, write};
 
 fn home(protocol: Protocol, seed: u64) -> GeneratedEpisode {
     generate(&RoutineSettings { seed, protocol })
 }
 
 fn story(protocol: Protocol, seed: u64) -> Story {
-    Story::draw(&RoutineSettings { seed, protocol }, &protocol.parameters())
+    Story::draw(&RoutineSettings { seed, protocol }, &protocol.parameters(), Routines::Own)
 }
 
 #[test]
@@ -40,7 +40,11 @@ fn equal_settings_give_equal_bytes_and_other_seeds_another_home(
         Protocol::TwoDays,
         Protocol::Paraphrased,
         Protocol::Office,
-        Protocol::OtherHomes
+        Protocol::OtherHomes,
+        Protocol::Mistaken,
+        Protocol::HandedDown,
+        Protocol::Couple,
+        Protocol::SharedHouse
     )]
     protocol: Protocol,
 ) {
@@ -67,7 +71,11 @@ fn a_home_is_whole(
         Protocol::TwoDays,
         Protocol::Paraphrased,
         Protocol::Office,
-        Protocol::OtherHomes
+        Protocol::OtherHomes,
+        Protocol::Mistaken,
+        Protocol::HandedDown,
+        Protocol::Couple,
+        Protocol::SharedHouse
     )]
     protocol: Protocol,
     #[values(1, 2, 3, 4, 5, 6)] seed: u64,

@@ -100,8 +100,10 @@ async fn the_embedded_model_fetches_its_evidence_by_tool_calls() {
     assert_eq!((cost.model_calls, cost.tool_calls, cost.prompt_tokens), (2, 3, 0));
 
     // Bob uses the marker in three sessions, Tom in one, Mary in one; somebody unknown once.
-    let expected =
-        coin::evidence::posterior(&[3, 1, 1], None, &[], &coin::evidence::EvidenceParameters::default());
+    let expectation = coin::common_sense::expect("marker", &home().await.roster);
+    assert!(expectation.is_some());
+    let parameters = coin::evidence::EvidenceParameters::default();
+    let expected = coin::evidence::posterior(&[3, 1, 1], expectation.as_ref(), &[], &parameters);
     assert_eq!(inference.distribution.best(), expected.best());
     assert_eq!(inference.scores, expected.marginals(3));
 }
