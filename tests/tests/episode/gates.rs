@@ -103,3 +103,20 @@ fn only_things_that_see_an_answer_are_inferred_again() {
         .count();
     assert_eq!(inferred, 3);
 }
+
+/// The paper's scheme infers every unasked thing again after every answer.
+#[test]
+fn the_papers_scheme_of_inference_can_be_had() {
+    let calls = |scheme: &str| {
+        let report = super::report(&small_house(), &["--gate", "paper", "--reinference", scheme]);
+        assert_eq!(report["parameters"]["reinference"], scheme.replace('-', "_"));
+        (report["metrics"]["questions"].as_u64().unwrap(), report["cost"]["model_calls"].as_u64().unwrap())
+    };
+    let (asked, every) = calls("every-unasked");
+    // Two turns a thing: 34 things before the first question, 33 before the second, and so on to the last pass.
+    let things: u64 = (0..=asked).map(|step| 34 - step).sum();
+    let steps = 2 * asked;
+    assert_eq!(every, 2 * things + steps);
+    let (_, answered) = calls("answered-context");
+    assert!(answered < every / 2, "{answered} against {every}");
+}

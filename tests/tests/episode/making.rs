@@ -122,6 +122,71 @@ fn calibrating_twice_makes_the_same_file() {
     assert_eq!(texts[0], texts[1]);
 }
 
+/// The paper calibrates on the first days of the home that it judges.
+#[test]
+fn training_days_alone_may_be_calibrated_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let calibrated = |name: &str, more: &[&str]| -> Value {
+        let out = folder.path().join(name);
+        let calibrate =
+            Program::new("host").args(["calibrate", "--quiet", "--out"]).arg(&out).arg("--episode");
+        calibrate.arg(small_house()).args(more).run().expect_code(0);
+        serde_json::from_slice(&fs::read(&out).unwrap()).unwrap()
+    };
+    let whole = calibrated("whole.json", &[]);
+    let days = calibrated("days.json", &["--history", "training-days"]);
+    assert_eq!((&whole["history"], &days["history"]), (&"whole".into(), &"training_days".into()));
+    assert_ne!(whole["q_set"], days["q_set"], "three days tell less than seven");
+    assert_eq!(days["episodes"], serde_json::json!(["paper-1"]));
+
+    let mut episode = EpisodeBuilder::three_things();
+    episode.description.as_object_mut().unwrap().remove("train_until");
+    let without = episode.write();
+    Program::new("host")
+        .args(["calibrate", "--history", "training-days", "--out"])
+        .arg(folder.path().join("none.json"))
+        .arg("--episode")
+        .arg(without.path())
+        .run()
+        .expect_code(2)
+        .expect_stderr(&["train_until"]);
+}
+
+#[test]
+fn too_few_samples_for_a_level_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    Program::new("host")
+        .args(["calibrate", "--out"])
+        .arg(folder.path().join("mine.json"))
+        .arg("--episode")
+        .arg(fixture("episodes/three-things"))
+        .run()
+        .expect_code(0)
+        .expect_stderr(&["--risk 0.012", "at least 83", "--alpha 0.2", "at least 4"]);
+}
+
+#[test]
+fn thresholds_are_for_a_model_that_is_told_as_much() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("blind.json");
+    let calibrate =
+        Program::new("host").args(["calibrate", "--quiet", "--without", "usage", "--out"]).arg(&file);
+    calibrate.arg("--episode").arg(small_house()).run().expect_code(0);
+    let file = file.to_str().unwrap();
+    super::host(&small_house(), &["--calibration", file])
+        .run()
+        .expect_code(2)
+        .expect_stderr(&["usage withheld", "--force-calibration"]);
+    let forced = super::report(&small_house(), &["--calibration", file, "--force-calibration"]);
+    assert_eq!(forced["calibration"]["withheld"], serde_json::json!(["usage"]));
+    let blind = super::report(&small_house(), &["--calibration", file, "--without", "usage"]);
+    assert_eq!(blind["parameters"]["withheld"], serde_json::json!(["usage"]));
+    assert!(
+        blind["curve"][0]["subset_accuracy"].as_f64().unwrap() < 0.5,
+        "nothing is known of who used what"
+    );
+}
+
 #[test]
 fn nobody_calibrates_without_truth() {
     let mut episode = EpisodeBuilder::three_things();
