@@ -17,6 +17,8 @@ const EXAMPLES: &str = "\
 Examples:
   host --episode fixtures/episodes/small-house
       Run a week of a home with a simulated person; no key, no service.
+  host --episode HOME --html home.html
+      A page with a plan of the home; it opens from disk.
   host --episode HOME --answers terminal --db home.db
       Answer yourself, and keep what was learnt.
   host --episode HOME --json > report.json
@@ -189,6 +191,9 @@ pub struct RunArguments {
     /// Write the report to this file (JSON)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Write a page to this file: a plan of the home, the dialogue, and the evidence behind every conclusion
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Write what happens to this file as it happens (JSON Lines)
     #[arg(long, value_name = "FILE")]
     pub events: Option<PathBuf>,

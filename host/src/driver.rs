@@ -8,7 +8,7 @@ use coin::dialogue::Reading;
 use coin::owners::OwnerSet;
 use coin::roster::Roster;
 use coin_schemas::events::LogEvent;
-use coin_schemas::household::{ObjectId, OwnershipBoolean, Score, UserName};
+use coin_schemas::household::{ObjectId, OwnershipBoolean, Score, Source, UserName};
 use coin_schemas::model::{Task, TaskObject};
 use coin_schemas::report::{AnswerStatus, QuestionReport, Stopped};
 use coin_schemas::tools::{RecordAnswer, RecordAnswerResult, RecordScores, RecordScoresResult};
@@ -83,6 +83,28 @@ pub struct Driver<'a> {
     pub observer: &'a mut dyn Observer,
 }
 
+/// What is believed of a thing at one moment of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Standing {
+    /// The owners; empty where somebody outside the household owns it, or nothing is known.
+    pub owners: OwnerSet,
+    /// The probability of the best owner set; 1 where a person named the owners, 0 where nothing is known.
+    pub confidence: f64,
+    /// How the owners are known.
+    pub source: Source,
+}
+
+impl From<&ObjectState> for Standing {
+    fn from(state: &ObjectState) -> Self {
+        let inferred = state.assessment().map_or(0.0, |assessment| assessment.confidence);
+        let (confidence, source) = match state.answer() {
+            Some(_) => (1.0, Source::Answer),
+            None => (inferred, Source::Inferred),
+        };
+        Self { owners: state.owners(), confidence, source }
+    }
+}
+
 /// What came of a run.
 #[derive(Debug)]
 pub struct Outcome {
@@ -90,8 +112,8 @@ pub struct Outcome {
     pub agent: Agent,
     /// Every question that was put, in order.
     pub questions: Vec<QuestionReport>,
-    /// The owner sets before the first question and after each one.
-    pub history: Vec<BTreeMap<ObjectId, OwnerSet>>,
+    /// What was believed before the first question and after each one.
+    pub history: Vec<BTreeMap<ObjectId, Standing>>,
     /// Why the run ended.
     pub stopped: Stopped,
 }
@@ -113,7 +135,7 @@ impl Driver<'_> {
                     }
                     Effect::Record { objects } => self.record(&agent, &objects).await?,
                     Effect::Ask { object } => {
-                        history.push(self.owners(&agent));
+                        history.push(self.standings(&agent));
                         debug_assert_eq!(history.len(), questions.len() + 1);
                         let (event, report) = self.ask(&agent, &object).await?;
                         events.push(event);
@@ -122,7 +144,7 @@ impl Driver<'_> {
                     Effect::Finish { stopped } => {
                         // Where nobody was left to ask, the state before the open question is the last one.
                         if history.len() == questions.len() {
-                            history.push(self.owners(&agent));
+                            history.push(self.standings(&agent));
                         }
                         return Ok(Outcome { agent, questions, history, stopped });
                     }
@@ -139,10 +161,11 @@ impl Driver<'_> {
         self.roster.indices().map(|user| (self.roster.name(user).clone(), owners.contains(user))).collect()
     }
 
-    fn owners(&self, agent: &Agent) -> BTreeMap<ObjectId, OwnerSet> {
+    fn standings(&self, agent: &Agent) -> BTreeMap<ObjectId, Standing> {
+        let unknown = ObjectState::default();
         self.things
             .keys()
-            .map(|object| (object.clone(), agent.object(object).map_or(OwnerSet::EMPTY, ObjectState::owners)))
+            .map(|object| (object.clone(), Standing::from(agent.object(object).unwrap_or(&unknown))))
             .collect()
     }
 
@@ -254,6 +277,7 @@ impl Driver<'_> {
             object_id: object.clone(),
             question: question.clone(),
             answer: String::new(),
+            answered_by: None,
             ownership: self.ownership(OwnerSet::EMPTY),
             status: AnswerStatus::Unresolved,
             uncertainty_before: state.assessment().map_or(1.0, |assessment| assessment.uncertainty),
@@ -303,12 +327,12 @@ impl Driver<'_> {
             step,
             object_id: object.clone(),
             answer: answer.clone(),
-            answered_by,
+            answered_by: answered_by.clone(),
             ownership: ownership.clone(),
             owner_outside_household: reading.outside_household,
             status: recorded.status,
         })?;
-        let report = QuestionReport { answer, ownership, status: recorded.status, ..put };
+        let report = QuestionReport { answer, answered_by, ownership, status: recorded.status, ..put };
         debug_assert_eq!(recorded.status == AnswerStatus::Unresolved, reading.is_unresolved());
         Ok((Event::Answered { reading }, Some(report)))
     }

@@ -7,6 +7,7 @@ pub mod calibrate;
 pub mod cli;
 pub mod client;
 pub mod driver;
+pub mod evidence;
 pub mod experiment;
 pub mod generate;
 pub mod home;

@@ -18,8 +18,9 @@ use coin_host::model::ChatModel;
 use coin_host::model::embedded::EmbeddedModel;
 use coin_host::observer::Chronicle;
 use coin_host::output::{EventLog, Printer, Progress, ResultFormat};
+use coin_host::pages::episode::{EpisodePage, episode as page};
 use coin_host::person::PersonKind;
-use coin_host::run::{Answers, ForeignCalibration, RunSettings, run_episode};
+use coin_host::run::{Answers, EvidenceKept, ForeignCalibration, RunSettings, run_episode};
 use tempfile::NamedTempFile;
 use tracing_subscriber::EnvFilter;
 
@@ -96,6 +97,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
         None => None,
     };
     let report_file = arguments.report.as_deref().map(OutputFile::create).transpose()?;
+    let page_file = arguments.html.as_deref().map(OutputFile::create).transpose()?;
     let settings = RunSettings {
         episode,
         db: arguments.db.clone(),
@@ -111,6 +113,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
             true => ForeignCalibration::Used,
             false => ForeignCalibration::Refused,
         },
+        evidence: if page_file.is_some() { EvidenceKept::All } else { EvidenceKept::None },
     };
     let format = if arguments.json { ResultFormat::Json } else { ResultFormat::Text };
     let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
@@ -128,8 +131,16 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if let Some(file) = report_file {
         file.write_json(&result.report)?;
     }
+    if let Some(file) = page_file {
+        file.write(&page(EpisodePage {
+            episode: &result.episode,
+            report: &result.report,
+            history: &result.history,
+            evidence: &result.evidence,
+        }))?;
+    }
     printer
-        .report(&result.report, &result.users)
+        .report(&result.report, &result.episode.users)
         .map_err(|error| Failure::Failed(format!("standard output takes no more: {error}")))
 }
 
@@ -220,13 +231,21 @@ impl OutputFile {
         Ok(Self { path: path.to_owned(), partial })
     }
 
-    fn write_json(mut self, value: &impl serde::Serialize) -> Result<(), Failure> {
-        let failed =
-            |reason: String| Failure::Failed(format!("cannot write {}: {reason}", self.path.display()));
-        let mut json = serde_json::to_string_pretty(value).map_err(|error| failed(error.to_string()))?;
-        json.push('\n');
-        self.partial.write_all(json.as_bytes()).map_err(|error| failed(error.to_string()))?;
-        self.partial.persist(&self.path).map_err(|error| failed(error.error.to_string()))?;
-        Ok(())
+    fn failed(&self, reason: &impl std::fmt::Display) -> Failure {
+        Failure::Failed(format!("cannot write {}: {reason}", self.path.display()))
+    }
+
+    fn write_json(self, value: &impl serde::Serialize) -> Result<(), Failure> {
+        let json = serde_json::to_string_pretty(value).map_err(|error| self.failed(&error))?;
+        self.write(&format!("{json}\n"))
+    }
+
+    fn write(mut self, text: &str) -> Result<(), Failure> {
+        self.partial.write_all(text.as_bytes()).map_err(|error| self.failed(&error))?;
+        let Self { path, partial } = self;
+        partial
+            .persist(&path)
+            .map(drop)
+            .map_err(|error| Failure::Failed(format!("cannot write {}: {}", path.display(), error.error)))
     }
 }

@@ -14,7 +14,7 @@ use coin_schemas::report::{
     Cost, CurvePoint, MetricsReport, MetricsSummary, ObjectReport, Parameters, Report,
 };
 
-use crate::driver::Outcome;
+use crate::driver::{Outcome, Standing};
 
 /// What a report says beside the outcome.
 #[derive(Debug)]
@@ -143,11 +143,11 @@ pub fn true_owners(truth: &Truth, roster: &Roster) -> Result<TrueOwners, RosterE
 }
 
 fn judged<'a>(
-    estimates: &'a BTreeMap<ObjectId, OwnerSet>,
+    estimates: &'a BTreeMap<ObjectId, Standing>,
     truth: &'a TrueOwners,
 ) -> impl Iterator<Item = (&'a ObjectId, Judged)> {
-    estimates.iter().filter_map(|(object, &estimate)| {
-        truth.get(object).map(|&truth| (object, Judged { estimate, truth }))
+    estimates.iter().filter_map(|(object, standing)| {
+        truth.get(object).map(|&truth| (object, Judged { estimate: standing.owners, truth }))
     })
 }
 

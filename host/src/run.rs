@@ -1,6 +1,6 @@
 //! One episode from its folder to its report.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -13,7 +13,7 @@ use coin::space::Neighbourhood;
 use coin_schemas::calibration::Calibration;
 use coin_schemas::episode::{Episode, Truth};
 use coin_schemas::events::LogEvent;
-use coin_schemas::household::{ObjectId, Users};
+use coin_schemas::household::ObjectId;
 use coin_schemas::report::{Gate, Parameters, Report, Withheld};
 use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS};
 use coin_server::episode::{EpisodeError, LoadedEpisode};
@@ -21,9 +21,11 @@ use thiserror::Error;
 
 use crate::calibrate::CalibrationFileError;
 use crate::client::{ServerAddress, ServerError};
-use crate::driver::{DriveError, Driver, Observer, Outcome};
+use crate::driver::{DriveError, Driver, Observer, Outcome, Standing};
+use crate::evidence::{self, Evidence};
 use crate::home::{self, Home, HomeError};
 use crate::model::ChatModel;
+use crate::pages::episode::Belief;
 use crate::person::{
     Person, PersonError, PersonKind, ScriptError, ScriptedPerson, SimulatedPerson, TerminalPerson,
 };
@@ -81,6 +83,18 @@ pub struct RunSettings {
     pub withheld: BTreeSet<Withheld>,
     /// What to do with the calibration of another model.
     pub foreign_calibration: ForeignCalibration,
+    /// Whether the evidence about every thing is fetched in the end.
+    pub evidence: EvidenceKept,
+}
+
+/// Whether a run keeps what a page shows of each thing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum EvidenceKept {
+    /// Nobody looks at it.
+    #[default]
+    None,
+    /// It is fetched from the server when the run is over.
+    All,
 }
 
 /// What to do with a calibration that was made for another model, whose scores mean something else.
@@ -151,8 +165,12 @@ impl RunError {
 pub struct RunResult {
     /// The report.
     pub report: Report,
-    /// The members of the household, for whoever shows the report.
-    pub users: Users,
+    /// The home; it holds no truth.
+    pub episode: Episode,
+    /// What was believed before the first question and after each one.
+    pub history: Vec<BTreeMap<ObjectId, Belief>>,
+    /// What the server tells of every thing in the end, where it was to be kept.
+    pub evidence: BTreeMap<ObjectId, Evidence>,
 }
 
 /// Carries one episode through.
@@ -206,9 +224,25 @@ pub async fn run_episode(
     observer
         .observe(&LogEvent::RunFinished { stopped: report.stopped, metrics: report.metrics.clone() })
         .map_err(DriveError::from)?;
-    let users = home.roster.users();
+    let evidence = match settings.evidence {
+        EvidenceKept::None => BTreeMap::new(),
+        EvidenceKept::All => evidence::collect(&home.server, home.things.keys(), home.episode.now).await?,
+    };
+    let history = beliefs(&outcome, &home);
     home.server.close().await;
-    Ok(RunResult { report, users })
+    Ok(RunResult { report, episode: home.episode, history, evidence })
+}
+
+fn beliefs(outcome: &Outcome, home: &Home) -> Vec<BTreeMap<ObjectId, Belief>> {
+    let named = |standing: &Standing| Belief {
+        owners: home.roster.owners(standing.owners),
+        confidence: standing.confidence,
+        source: standing.source,
+    };
+    let of_step = |standings: &BTreeMap<ObjectId, Standing>| {
+        standings.iter().map(|(object, standing)| (object.clone(), named(standing))).collect()
+    };
+    outcome.history.iter().map(of_step).collect()
 }
 
 /// Runs the agent in a home and says what it cost, without the time.

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::Calibration;
-use crate::household::{ClassLabel, ObjectId, Owners, OwnershipBoolean, Scores, Source, UsageType};
+use crate::household::{ClassLabel, ObjectId, Owners, OwnershipBoolean, Scores, Source, UsageType, UserName};
 
 /// The whole report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -165,6 +165,10 @@ pub struct QuestionReport {
     pub question: String,
     /// The answer as it was given.
     pub answer: String,
+    /// Who gave it, where known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "UserName")]
+    pub answered_by: Option<UserName>,
     /// How the answer was read.
     pub ownership: OwnershipBoolean,
     /// What became of it.

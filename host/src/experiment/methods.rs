@@ -15,7 +15,7 @@ use coin_schemas::report::{Cost, Gate, Withheld};
 
 use super::{Calibrations, JudgedHome, actowl};
 use crate::client::ServerAddress;
-use crate::driver::Unobserved;
+use crate::driver::{Standing, Unobserved};
 use crate::home::Home;
 use crate::model::ChatModel;
 use crate::person::SimulatedPerson;
@@ -101,7 +101,10 @@ async fn agent(
     let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
     let (outcome, cost) = drive(&home, settings, &withheld, model, &mut person, &mut Unobserved).await?;
     home.server.close().await;
-    Ok(MethodOutcome { history: outcome.history, cost })
+    let owners = |standings: BTreeMap<ObjectId, Standing>| {
+        standings.into_iter().map(|(object, standing)| (object, standing.owners)).collect()
+    };
+    Ok(MethodOutcome { history: outcome.history.into_iter().map(owners).collect(), cost })
 }
 
 /// A baseline that only looks at who used each thing, up to the episode's present.

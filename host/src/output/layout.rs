@@ -7,7 +7,7 @@ use comfy_table::{ColumnConstraint, ContentArrangement, Table, Width};
 use super::plain_text;
 
 /// Owners in words, as short as they can be said to somebody who knows the household.
-pub(super) fn owners_in_words(owners: &Owners, household: &Owners) -> String {
+pub(crate) fn owners_in_words(owners: &Owners, household: &Owners) -> String {
     let mut others = household.difference(owners);
     match (others.next(), others.next()) {
         _ if owners.is_empty() => "somebody outside".to_owned(),
@@ -35,14 +35,14 @@ pub(super) fn names_with_and(names: &[&UserName]) -> String {
 }
 
 /// A probability in whole percent, rounded down, so that only certainty is 100 %.
-pub(super) fn percent(probability: f64) -> String {
+pub(crate) fn percent(probability: f64) -> String {
     // 0.29 × 100 is a little less than 29.
     let whole = (probability * 100.0 + 1e-9).floor();
     format!("{} %", if probability < 1.0 { whole.min(99.0) } else { whole })
 }
 
 /// `1 thing`, `2 things`; thousands are set apart.
-pub(super) fn count(number: u64, singular: &str, plural: &str) -> String {
+pub(crate) fn count(number: u64, singular: &str, plural: &str) -> String {
     let noun = if number == 1 { singular } else { plural };
     format!("{} {noun}", grouped(number))
 }

@@ -1,5 +1,6 @@
 //! What a person sees: the story on stderr while it happens, the result on stdout, the event log in a file.
 
+pub(crate) mod conclusions;
 pub mod events;
 mod layout;
 pub mod narration;

@@ -5,6 +5,7 @@
 //! scheme and is readable without colour, without a mouse and without its script.
 
 pub mod chart;
+pub mod episode;
 pub mod experiment;
 pub mod table;
 

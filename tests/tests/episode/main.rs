@@ -3,6 +3,7 @@
 mod experiment;
 mod gates;
 mod making;
+mod pages;
 mod people;
 mod promises;
 mod refused_episodes;

@@ -4,14 +4,18 @@ use std::collections::BTreeMap;
 
 use coin_schemas::calibration::{Calibration, NonconformityScore};
 use coin_schemas::household::{
-    ClassLabel, ObjectId, Owners, OwnershipBoolean, Score, Scores, UsageType, UserName,
+    ClassLabel, ObjectId, Owners, OwnershipBoolean, Score, Scores, Source, UsageType, UserName,
 };
-use coin_schemas::report::{Cost, MetricsReport, MetricsSummary, Parameters, Stopped};
+use coin_schemas::report::{
+    AnswerStatus, Cost, Gate, MetricsReport, MetricsSummary, ObjectReport, Parameters, QuestionReport,
+    Stopped,
+};
 use proptest::prelude::*;
 use rstest::rstest;
 
 use super::*;
 use crate::output::Colour;
+use crate::output::conclusions::guarantee;
 
 const FAMILY: [(&str, &str, &str); 3] = [
     ("Bob", "father", "office worker"),
@@ -60,6 +64,7 @@ fn question(step: usize, id: &str, answer: &str, status: AnswerStatus) -> Questi
         object_id: ObjectId::new(id).unwrap(),
         question: "Whose is it?".to_owned(),
         answer: answer.to_owned(),
+        answered_by: None,
         ownership: OwnershipBoolean::new(),
         status,
         uncertainty_before: 0.4,

@@ -34,7 +34,8 @@ svg.chart .axis{stroke:var(--muted)}";
 pub struct Look(pub usize);
 
 impl Look {
-    fn colour(self) -> String {
+    /// The colour, as a variable that both schemes set.
+    pub(crate) fn colour(self) -> String {
         format!("var(--c{})", self.0 % 9)
     }
 
@@ -57,7 +58,7 @@ impl Look {
 }
 
 /// A coordinate as it is written; what is not finite would break the file.
-fn unit(value: f64) -> String {
+pub(crate) fn unit(value: f64) -> String {
     let finite = if value.is_finite() { value } else { 0.0 };
     format!("{:.1}", finite + 0.0)
 }

@@ -7,7 +7,7 @@ use crate::output::layout::{count, percent};
 use crate::output::plain_text;
 
 /// What may be relied on, and from what data that follows.
-pub(super) fn guarantee(report: &Report) -> String {
+pub(crate) fn guarantee(report: &Report) -> String {
     let Some(calibration) = &report.calibration else { return no_guarantee(report) };
     if calibration.samples == 0 {
         return "none: the calibration was made from no data. Make one with host calibrate.".to_owned();

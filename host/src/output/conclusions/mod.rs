@@ -1,0 +1,98 @@
+//! What a report says, in words: of one thing, whose it is, how sure that is and why; of the run, what it took, why it
+//! ended and what may be relied on. The terminal and the page say the same.
+
+mod facts;
+pub(crate) mod guarantee;
+
+use coin_schemas::household::{Owners, Source};
+use coin_schemas::report::{AnswerStatus, Gate, ObjectReport, QuestionReport, Report};
+
+use super::layout::names;
+use super::plain_text;
+
+pub(crate) use super::layout::{count, owners_in_words, percent};
+pub(crate) use facts::facts;
+
+/// How many people besides the owners are named as plausible; more are counted.
+const OTHERS_NAMED: usize = 3;
+
+/// Whether the truth is known and the owner set is another one.
+pub(crate) fn is_wrong(object: &ObjectReport) -> bool {
+    object.truth.as_ref().is_some_and(|truth| *truth != object.owners)
+}
+
+/// Whether nothing is known of the thing, because the model failed and no person said anything.
+fn is_unknown(object: &ObjectReport) -> bool {
+    object.source == Source::Inferred && object.problem.is_some()
+}
+
+/// The owners in words.
+pub(crate) fn whose(object: &ObjectReport, household: &Owners) -> String {
+    if is_unknown(object) { "unknown".to_owned() } else { owners_in_words(&object.owners, household) }
+}
+
+/// The probability of the owner set.
+pub(crate) fn how_sure(object: &ObjectReport) -> String {
+    if is_unknown(object) { "–".to_owned() } else { percent(object.confidence) }
+}
+
+/// What the conclusion rests on, and what is left open.
+pub(crate) fn why(report: &Report, object: &ObjectReport) -> String {
+    let questions: Vec<&QuestionReport> =
+        report.questions.iter().filter(|question| question.object_id == object.id).collect();
+    let mut reasons: Vec<String> = Vec::new();
+    match object.source {
+        Source::Answer => {
+            let answered = |question: &&&QuestionReport| question.status == AnswerStatus::Answered;
+            reasons.push(match questions.iter().rev().find(answered) {
+                Some(question) => {
+                    format!("Q{}: “{}”", question.step, plain_text(question.answer.trim()))
+                }
+                None => "answered".to_owned(),
+            });
+        }
+        Source::Inferred => {
+            match &object.problem {
+                Some(problem) => reasons.push(format!("the model failed: {}", plain_text(problem))),
+                None => reasons.push(if object.shared { "inferred, shared" } else { "inferred" }.to_owned()),
+            }
+            reasons.extend(questions.last().map(|question| format!("Q{} left it open", question.step)));
+            reasons.extend(not_excluded(report, object));
+            if is_unsettled(report, object) {
+                reasons.push("not settled".to_owned());
+            }
+        }
+    }
+    reasons.join("; ")
+}
+
+/// Who else is plausible. A threshold that excludes nobody says nothing of any one thing.
+fn not_excluded(report: &Report, object: &ObjectReport) -> Option<String> {
+    let calibration = report.calibration.as_ref()?;
+    if calibration.q_alpha >= 1.0 || object.problem.is_some() {
+        return None;
+    }
+    let others: Vec<_> = object.prediction_set.difference(&object.owners).collect();
+    match others.len() {
+        0 => None,
+        many if many > OTHERS_NAMED => Some(format!("{many} others not excluded")),
+        _ => Some(format!("{} not excluded", names(others))),
+    }
+}
+
+/// Whether the gate would have asked about the thing, had it been able to. Of the gate over owner sets the report
+/// does not hold enough to tell.
+fn is_unsettled(report: &Report, object: &ObjectReport) -> bool {
+    if object.source == Source::Answer {
+        return false;
+    }
+    let doubted = match (report.gate, &report.calibration) {
+        (Gate::Never, _) => return false,
+        (Gate::Always, _) => true,
+        (_, None) => object.confidence < coin::calibration::UNCALIBRATED_CONFIDENCE,
+        (Gate::Risk, Some(calibration)) => object.confidence < calibration.lambda,
+        (Gate::Paper, Some(calibration)) => object.uncertainty > calibration.q_cp,
+        (Gate::Set, Some(_)) => false,
+    };
+    doubted || object.problem.is_some()
+}
