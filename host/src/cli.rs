@@ -63,8 +63,8 @@ pub struct ExperimentArguments {
     /// Folders of the episodes to judge, with a truth file each
     #[arg(long, value_name = "DIR", required = true, num_args = 1..)]
     pub episode: Vec<PathBuf>,
-    /// Folders of other episodes to calibrate on, every ablation by itself [default: the calibration that comes with
-    /// the model]
+    /// Folders of other episodes to calibrate on, for every gate and ablation by itself [default: the calibrations that
+    /// come with the model]
     #[arg(long, value_name = "DIR", num_args = 1..)]
     pub calibrate_on: Vec<PathBuf>,
     /// What to compare [default: everything]

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::{Parser, ValueEnum};
-use coin::calibration::too_few_samples;
+use coin::calibration::{households_wanted, too_few_samples};
 use coin_host::calibrate::{CalibrateSettings, calibrate_on, read_calibration};
 use coin_host::cli::{
     CalibrateArguments, Command, CommandLine, ExperimentArguments, GenerateCommand, MethodArgument,
@@ -167,6 +167,18 @@ fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
             "Too few samples for --{} {}: {} things were scored and at least {} are needed, so {} keeps nothing out: \
              {}. Calibrate on more homes.",
             lack.level_name, lack.level, calibration.samples, lack.needed, lack.threshold, lack.consequence,
+        ));
+    }
+    let wanted = households_wanted(settings.levels);
+    if calibration.households < wanted {
+        printer.progress(&format!(
+            "{} calibrated on, and the things of one home are alike: with fewer than {wanted} homes, what --risk {} \
+             promises may be missed on average over homes.",
+            match calibration.households {
+                1 => "One home was".to_owned(),
+                many => format!("{many} homes were"),
+            },
+            calibration.risk,
         ));
     }
     printer.progress(&format!(

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use coin::agent::{Agent, AgentSettings, Reinference};
-use coin::calibration::{EMBEDDED_MODEL, Thresholds, embedded_calibration};
+use coin::calibration::{EMBEDDED_MODEL, Thresholds, embedded_calibration, score_of};
 use coin::dialogue::Reading;
 use coin::roster::RosterError;
 use coin::sharing::ShareThresholds;
@@ -275,11 +275,12 @@ pub(crate) async fn drive(
 }
 
 /// The calibration that was handed in, which must be the model's own and of a model that was told as much, or the one
-/// that comes with the program.
+/// of the program that goes with the gate.
 fn calibration_for(settings: &RunSettings, model: &str) -> Result<Option<Calibration>, CalibrationFileError> {
     let Some(calibration) = &settings.calibration else {
         return match model {
-            EMBEDDED_MODEL => embedded_calibration().map(Some).map_err(CalibrationFileError::BuiltIn),
+            EMBEDDED_MODEL => embedded_calibration(score_of(settings.gate), &settings.withheld)
+                .map_err(CalibrationFileError::BuiltIn),
             _ => Ok(None),
         };
     };

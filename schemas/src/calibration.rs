@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::report::Withheld;
 
 /// Which true owners a nonconformity score looks at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NonconformityScore {
     /// The paper's: one minus the largest score of a true owner. Its prediction set holds *at least one* true
@@ -64,7 +64,8 @@ pub struct Calibration {
     /// Risk control: a thing is settled without a question where its best owner set has at least this
     /// probability. Above 1 where no threshold keeps the risk, so that everything is asked.
     pub lambda: f64,
-    /// The names of the episodes that were scored, so that nobody is judged by thresholds that know their home.
+    /// The names of the episodes that were scored. For a home of such a name a report promises nothing: the thresholds
+    /// know what they judge.
     #[serde(default)]
     pub episodes: Vec<String>,
     /// Which part of their history was scored.

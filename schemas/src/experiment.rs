@@ -28,8 +28,8 @@ pub struct ExperimentResults {
     pub methods: BTreeMap<Method, MethodResults>,
     /// Whether the methods differ by more than chance.
     pub tests: StatisticalTests,
-    /// The least questions with which a score can be reached: a person who knows which things are wrong at
-    /// once asks about exactly those. Starts from what `no_questions` believes.
+    /// What somebody would reach who knew which things are wrong at once and asked about exactly those, if every
+    /// answer settled its own thing only. Starts from what `no_questions` believes.
     pub oracle: Vec<StepSpread>,
     /// The Subset Accuracy whose reaching is the event of the Kaplan–Meier curves.
     pub target_accuracy: f64,

@@ -1,5 +1,5 @@
 //! The fixture `small-house` has the structure of the paper's data: the paper's two heuristics, written down here
-//! anew, get the paper's rows of Tables 2 to 5 on it, to the third decimal.
+//! anew, get the paper's rows of Tables 2 and 4 to 6 on it, to the third decimal.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

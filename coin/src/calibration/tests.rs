@@ -146,7 +146,8 @@ mod embedded {
 
     #[test]
     fn the_built_in_calibration_is_one() {
-        let calibration = embedded_calibration().unwrap();
+        let calibration =
+            embedded_calibration(NonconformityScore::AllOwners, &BTreeSet::new()).unwrap().unwrap();
         assert_eq!(calibration.model, EMBEDDED_MODEL);
         for value in [calibration.alpha, calibration.alpha_cp, calibration.risk] {
             assert_eq!(level(value).value(), value);

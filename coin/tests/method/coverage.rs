@@ -4,7 +4,9 @@
 //! Each test fails by accident with a probability of at most [`FALSE_ALARM`]; that is a statement about the choice
 //! of the seeds, because a given seed always gives the same result.
 
-use coin::calibration::{CalibrationSample, Levels, Thresholds, calibrate};
+use coin::calibration::{
+    CalibrationSample, Levels, Thresholds, calibrate, households_wanted, too_few_samples,
+};
 use coin::conformal::risk::{ASK_EVERYTHING, Outcome, RiskSample, risk_threshold};
 use coin::conformal::{Level, label_set, split};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
@@ -264,6 +266,47 @@ fn a_calibration_keeps_all_its_promises_at_once(
         asked > 0 && asked < trials,
         "the threshold has to tell things apart, and {asked} of {trials} were asked"
     );
+}
+
+/// Things of one home are alike: in one home of five the model is often wrong and as sure as ever. The share of losses in
+/// a fresh home, over calibrations on so many homes of 34 things.
+fn losses_in_a_fresh_home(homes: usize, epsilon: Level, trials: usize) -> f64 {
+    const THINGS: usize = 34;
+    let mut generator = ChaCha8Rng::seed_from_u64(homes as u64);
+    let mut home = || -> Vec<RiskSample> {
+        let wrong = if generator.random::<f64>() < 0.2 { 0.3 } else { 0.02 };
+        (0..THINGS)
+            .map(|_| {
+                let outcome = if generator.random::<f64>() < wrong { Outcome::Wrong } else { Outcome::Right };
+                let uniform: f64 = generator.random();
+                let confidence = if outcome == Outcome::Wrong { uniform } else { uniform.powf(0.2) };
+                RiskSample { confidence, outcome }
+            })
+            .collect()
+    };
+    let losses: usize = (0..trials)
+        .map(|_| {
+            let calibration: Vec<RiskSample> = (0..homes).flat_map(|_| home()).collect();
+            let threshold = risk_threshold(&calibration, epsilon);
+            let is_loss =
+                |thing: &RiskSample| thing.confidence >= threshold && thing.outcome == Outcome::Wrong;
+            home().iter().filter(|thing| is_loss(thing)).count()
+        })
+        .sum();
+    losses as f64 / (trials * THINGS) as f64
+}
+
+/// The promise is about exchangeable things. With few homes it is missed, although the things are many enough; from
+/// [`households_wanted`] homes on the miss is small.
+#[test]
+fn risk_control_wants_homes_and_not_things_alone() {
+    let epsilon = level(0.012);
+    let levels = Levels { alpha: level(0.2), alpha_cp: level(0.05), risk: epsilon };
+    assert!(too_few_samples(3 * 34, levels).is_empty());
+    let few = losses_in_a_fresh_home(3, epsilon, 20_000);
+    let many = losses_in_a_fresh_home(households_wanted(levels), epsilon, 4_000);
+    assert!(few > 1.3 * epsilon.value(), "{few}");
+    assert!(many < 1.1 * epsilon.value(), "{many}");
 }
 
 #[test]

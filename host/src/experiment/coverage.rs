@@ -16,7 +16,8 @@ use tempfile::TempDir;
 
 use super::methods::{self, MethodOutcome};
 use super::{
-    Calibrations, CoverageHomes, ExperimentError, ExperimentSettings, JudgedHome, Progress, load_home,
+    Calibrations, CoverageHomes, ExperimentError, ExperimentSettings, JudgedHome, Progress, default_kind,
+    load_home,
 };
 use crate::calibrate::{ScoredHome, score_homes};
 use crate::generate::{self, Protocol, RoutineSettings};
@@ -213,7 +214,7 @@ async fn wrong_in_the_end(
     progress: &mut (dyn Progress + Send),
 ) -> Result<(usize, usize), ExperimentError> {
     let calibrations: Arc<Calibrations> =
-        Arc::new([(BTreeSet::new(), Some(promises.all_owners.clone()))].into());
+        Arc::new([(default_kind(), Some(promises.all_owners.clone()))].into());
     let jobs = homes.iter().cloned().map(|folder| {
         let (model, calibrations) = (Arc::clone(model), Arc::clone(&calibrations));
         async move {
@@ -236,3 +237,6 @@ fn wrong(outcome: &MethodOutcome, home: &JudgedHome) -> (usize, usize) {
     let wrong = owners.iter().filter(|(object, truth)| last.get(**object) != Some(truth)).count();
     (wrong, owners.len())
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use coin::agent::{AgentSettings, Reinference};
 use coin::baselines::{frequency, last_user};
-use coin::calibration::Thresholds;
+use coin::calibration::{Thresholds, score_of};
 use coin::owners::OwnerSet;
 use coin::sharing::ShareThresholds;
 use coin::usage::UsageEvent;
+use coin_schemas::calibration::NonconformityScore;
 use coin_schemas::experiment::Method;
 use coin_schemas::household::ObjectId;
 use coin_schemas::report::{Cost, Gate, Withheld};
@@ -54,10 +55,25 @@ fn variant(method: Method) -> Option<Variant> {
     }
 }
 
-/// What a method withholds from the model while it compares with thresholds; `None` where it compares with none.
-pub(super) fn withheld(method: Method) -> Option<BTreeSet<Withheld>> {
+/// What thresholds have to be made from to be those of a method.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct CalibrationKind {
+    /// What the model is not told.
+    pub(super) withheld: BTreeSet<Withheld>,
+    /// The score of prediction sets over members.
+    pub(super) score: NonconformityScore,
+}
+
+impl Variant {
+    fn calibration(&self) -> CalibrationKind {
+        CalibrationKind { withheld: self.withheld.iter().copied().collect(), score: score_of(self.gate) }
+    }
+}
+
+/// The thresholds that a method compares with; `None` where it compares with none.
+pub(super) fn calibration(method: Method) -> Option<CalibrationKind> {
     let variant = variant(method).filter(|variant| variant.gate != Gate::Never)?;
-    Some(variant.withheld.iter().copied().collect())
+    Some(variant.calibration())
 }
 
 /// Runs a method in a home of its own, from the captions to the last answer.
@@ -86,12 +102,12 @@ async fn agent(
     calibrations: &Calibrations,
     seed: u64,
 ) -> Result<MethodOutcome, RunError> {
-    let withheld: BTreeSet<Withheld> = variant.withheld.iter().copied().collect();
+    let kind = variant.calibration();
     let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
     let settings = AgentSettings {
         gate: variant.gate,
         thresholds: calibrations
-            .get(&withheld)
+            .get(&kind)
             .and_then(Option::as_ref)
             .map_or(Thresholds::Uncalibrated, Thresholds::from),
         share: ShareThresholds::default(),
@@ -99,7 +115,7 @@ async fn agent(
         reinference: variant.reinference,
     };
     let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
-    let (outcome, cost) = drive(&home, settings, &withheld, model, &mut person, &mut Unobserved).await?;
+    let (outcome, cost) = drive(&home, settings, &kind.withheld, model, &mut person, &mut Unobserved).await?;
     home.server.close().await;
     let owners = |standings: BTreeMap<ObjectId, Standing>| {
         standings.into_iter().map(|(object, standing)| (object, standing.owners)).collect()

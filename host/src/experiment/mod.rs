@@ -22,7 +22,6 @@ use coin_schemas::calibration::{Calibration, History, NonconformityScore};
 use coin_schemas::episode::Truth;
 use coin_schemas::experiment::{ExperimentResults, Method};
 use coin_schemas::household::ObjectId;
-use coin_schemas::report::Withheld;
 use coin_server::episode::{EpisodeError, LoadedEpisode};
 use thiserror::Error;
 
@@ -33,6 +32,7 @@ use crate::model::ChatModel;
 use crate::model::counted::{Counted, TokenizerError};
 use crate::parallel;
 use crate::run::RunError;
+use methods::CalibrationKind;
 
 pub use tables::{summary, tables};
 pub use write::{WriteError, check_folder, write};
@@ -48,8 +48,8 @@ pub const SIGNIFICANCE: f64 = 0.05;
 pub struct ExperimentSettings {
     /// Folders of the episodes to judge, with a truth file each.
     pub episodes: Vec<PathBuf>,
-    /// Folders of other episodes to calibrate every variant of the model on; empty takes the calibration that comes
-    /// with the model for all of them.
+    /// Folders of other episodes to calibrate every variant of the model on; empty takes the calibrations that come
+    /// with the model.
     pub calibrate_on: Vec<PathBuf>,
     /// The levels of that calibration.
     pub levels: Levels,
@@ -143,8 +143,8 @@ struct JudgedHome {
     truth: Truth,
 }
 
-/// The thresholds of the model as it is and of its ablations.
-type Calibrations = BTreeMap<BTreeSet<Withheld>, Option<Calibration>>;
+/// The thresholds of the model as it is, with the paper's score, and of its ablations.
+type Calibrations = BTreeMap<CalibrationKind, Option<Calibration>>;
 
 /// Carries an experiment through.
 pub async fn run(
@@ -183,7 +183,7 @@ pub async fn run(
     progress.end();
 
     let coverage = coverage::measure(settings, &model, progress).await?;
-    let calibration = calibrations.get(&BTreeSet::new()).cloned().flatten();
+    let calibration = calibrations.get(&default_kind()).cloned().flatten();
     Ok(ExperimentResults {
         episodes: homes.iter().map(|home| home.loaded.episode.name.clone()).collect(),
         trials: settings.trials,
@@ -233,38 +233,42 @@ impl JudgedHome {
     }
 }
 
-/// One calibration for each thing that the methods withhold, so that an ablation is judged by thresholds of its own
-/// where there are homes to make them from.
+/// The thresholds of the default gate.
+fn default_kind() -> CalibrationKind {
+    CalibrationKind { withheld: BTreeSet::new(), score: NonconformityScore::AllOwners }
+}
+
+/// One calibration for each kind that the methods need, so that an ablation is judged by thresholds of its own.
 async fn calibrations(
     settings: &ExperimentSettings,
     model: &Arc<dyn ChatModel>,
     progress: &mut (dyn Progress + Send),
 ) -> Result<Calibrations, ExperimentError> {
-    let built_in = match model.name() {
-        EMBEDDED_MODEL => Some(embedded_calibration().map_err(CalibrationFileError::BuiltIn)?),
-        _ => None,
-    };
-    let mut variants: BTreeSet<BTreeSet<Withheld>> =
-        settings.methods.iter().filter_map(|&method| methods::withheld(method)).collect();
-    variants.insert(BTreeSet::new());
+    let mut kinds: BTreeSet<CalibrationKind> =
+        settings.methods.iter().filter_map(|&method| methods::calibration(method)).collect();
+    kinds.insert(default_kind());
     let mut calibrations = Calibrations::new();
-    for withheld in variants {
-        let calibration = if settings.calibrate_on.is_empty() {
-            built_in.clone()
-        } else {
-            progress.begin(settings.calibrate_on.len(), "homes calibrated on");
-            let settings = CalibrateSettings {
-                episodes: settings.calibrate_on.clone(),
-                levels: settings.levels,
-                score: NonconformityScore::AllOwners,
-                history: History::Whole,
-                withheld: withheld.clone(),
-            };
-            let made = calibrate_on(&settings, model, || progress.step()).await?;
-            progress.end();
-            Some(made)
+    for kind in kinds {
+        let calibration = match (settings.calibrate_on.is_empty(), model.name()) {
+            (true, EMBEDDED_MODEL) => {
+                embedded_calibration(kind.score, &kind.withheld).map_err(CalibrationFileError::BuiltIn)?
+            }
+            (true, _) => None,
+            (false, _) => {
+                progress.begin(settings.calibrate_on.len(), "homes calibrated on");
+                let settings = CalibrateSettings {
+                    episodes: settings.calibrate_on.clone(),
+                    levels: settings.levels,
+                    score: kind.score,
+                    history: History::Whole,
+                    withheld: kind.withheld.clone(),
+                };
+                let made = calibrate_on(&settings, model, || progress.step()).await?;
+                progress.end();
+                Some(made)
+            }
         };
-        calibrations.insert(withheld, calibration);
+        calibrations.insert(kind, calibration);
     }
     Ok(calibrations)
 }

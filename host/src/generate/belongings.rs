@@ -43,7 +43,7 @@ struct Slot {
 }
 
 /// The paper's 34 things: how many there are of each usage type and number of owners. Derived from the rows of
-/// its two heuristics in Tables 2 to 5.
+/// its two heuristics in Tables 2 and 4 to 6.
 const PAPER_SLOTS: [(usize, Slot); 7] = [
     (6, Slot { usage_type: UsageType::MultiUserSharing, owners: 3 }),
     (3, Slot { usage_type: UsageType::TemporarySharing, owners: 3 }),

@@ -75,7 +75,7 @@ fn three_decimals(value: f64) -> String {
 
 const METRICS: [&str; 5] = ["subset_accuracy", "mean_jaccard", "micro_precision", "micro_recall", "micro_f1"];
 
-/// Tables 2 to 5 of the paper.
+/// Tables 2 and 4 to 6 of the paper.
 #[rstest]
 #[case::last_user("last_user", None, ["0.588", "0.721", "0.941", "0.582", "0.719"])]
 #[case::frequency("frequency", None, ["0.647", "0.779", "1.000", "0.618", "0.764"])]

@@ -1,6 +1,6 @@
 //! `host generate routine` and `host calibrate`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -204,10 +204,10 @@ fn nobody_calibrates_without_truth() {
     assert!(!out.exists());
 }
 
-/// The commands of `fixtures/README.md` that make the default calibration, as words.
-fn commands_of_the_default_calibration() -> Vec<Vec<String>> {
+/// The commands of `fixtures/README.md` that make the built-in calibrations, as words.
+fn commands_of_the_built_in_calibrations() -> Vec<Vec<String>> {
     let readme = fs::read_to_string(fixture("README.md")).unwrap();
-    let (_, section) = readme.split_once("## The default calibration").expect("the README has the section");
+    let (_, section) = readme.split_once("## The built-in calibrations").expect("the README has the section");
     let block = section.split("```").nth(1).expect("the section has a block of commands");
     block.lines().filter(|line| !line.is_empty()).map(words).collect()
 }
@@ -217,15 +217,14 @@ fn words(line: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_default_calibration_is_what_its_commands_make() {
-    if !is_slow_run("the default calibration") {
+fn the_built_in_calibrations_are_what_their_commands_make() {
+    if !is_slow_run("the built-in calibrations") {
         return;
     }
-    let commands = commands_of_the_default_calibration();
-    assert_eq!(commands.len(), 2, "{commands:?}");
+    let commands = commands_of_the_built_in_calibrations();
     let folder = tempfile::tempdir().unwrap();
     let homes = folder.path().join("homes");
-    let made = folder.path().join("embedded.json");
+    let mut made = BTreeSet::new();
     for command in commands {
         assert_eq!(command[0], "host");
         let mut program = Program::new("host").patience(std::time::Duration::from_secs(1_200));
@@ -239,14 +238,26 @@ fn the_default_calibration_is_what_its_commands_make() {
                     found.sort();
                     program.args(found)
                 }
-                "fixtures/calibrations/embedded.json" => program.arg(&made),
-                word => program.arg(word),
+                word => match word.strip_prefix("fixtures/calibrations/") {
+                    Some(name) => {
+                        made.insert(name.to_owned());
+                        program.arg(folder.path().join(name))
+                    }
+                    None => program.arg(word),
+                },
             };
         }
         program.run().expect_code(0);
     }
-    let committed = repository().join("fixtures/calibrations/embedded.json");
-    let [made, committed] =
-        [made, committed].map(|file| serde_json::from_slice::<Value>(&fs::read(file).unwrap()).unwrap());
-    assert_eq!(made, committed);
+    let committed = repository().join("fixtures/calibrations");
+    let names: BTreeSet<String> = fs::read_dir(&committed)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(made, names);
+    for name in &names {
+        let [made, committed] = [folder.path(), committed.as_path()]
+            .map(|at| serde_json::from_slice::<Value>(&fs::read(at.join(name)).unwrap()).unwrap());
+        assert_eq!(made, committed, "{name}");
+    }
 }

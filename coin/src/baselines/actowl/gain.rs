@@ -28,8 +28,13 @@ impl Samples {
     }
 
     /// The expected information gain of asking about a thing, in nats: the sum of the entropies of the unasked labels
-    /// now, minus what is expected of it after the answer. An answer k re-weights the samples: those with z_o = k
-    /// stay. The asked label itself is known then.
+    /// now, minus what is expected of it after the answer; that is Σ_i I(z_i; z_o) over the unasked things i, the thing
+    /// itself included. An answer k re-weights the samples: those with z_o = k stay. The asked label itself is known
+    /// then.
+    ///
+    /// The sum over labels is meant: the entropy of all labels together falls by H(z_o) whatever z_o tells of the rest,
+    /// and a question would earn nothing by settling a whole shelf. From n samples of independent labels of K members
+    /// each other thing adds about (K − 1)² / 2n by chance.
     pub(super) fn expected_gain(&self, thing: usize, unasked: &[usize]) -> f64 {
         let total = self.labels.len().max(1) as f64;
         let mut together = vec![vec![vec![0.0; self.members]; unasked.len()]; self.members];

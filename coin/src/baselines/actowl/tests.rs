@@ -161,6 +161,49 @@ fn marginals_and_gains_are_those_of_enumeration() {
     }
 }
 
+/// What is sampled by default is enough to see which question tells most.
+#[test]
+fn the_default_sampling_comes_close_to_enumeration() {
+    let things = five_things();
+    let priors = Priors::around(&things.positions);
+    let all = enumerate(&things, &priors, 3, &[Known::Nothing; 5]);
+    let unasked: Vec<usize> = (0..5).collect();
+    for seed in 0..5 {
+        let run = ActOwl::new(things.clone(), priors, Sampling::default(), 3, generator(seed));
+        for &thing in &unasked {
+            let (found, exact) =
+                (run.samples.expected_gain(thing, &unasked), exact_gain(&all, thing, &unasked, 3));
+            assert!(
+                (found - exact).abs() < 0.2,
+                "seed {seed}: the gain of {thing} is {exact}, sampled {found}"
+            );
+        }
+    }
+}
+
+/// A thing with several owners says nothing of the others: the rest is enumerated as if it were not there.
+#[test]
+fn a_thing_that_is_left_out_says_nothing() {
+    // Of the attribute that is kept, the things that stay have every value, so that its prior is the same.
+    let all_five = Things {
+        attributes: five_things().attributes.iter().map(|of| vec![of[1]]).collect(),
+        ..five_things()
+    };
+    let rest =
+        Things { positions: all_five.positions[..4].to_vec(), attributes: all_five.attributes[..4].to_vec() };
+    let priors = Priors::around(&all_five.positions);
+    let mut run = ActOwl::new(all_five, priors, MANY, 2, generator(7));
+    // One label is known, because without any answer the two people are as good as each other.
+    run.answer(0, set(&[0]));
+    run.answer(4, set(&[0, 1]));
+    let known = [Known::Label(0), Known::Nothing, Known::Nothing, Known::Nothing];
+    let enumerated = enumerate(&rest, &priors, 2, &known);
+    for thing in 0..4 {
+        let (found, exact) = (run.probabilities(thing)[0], exact_marginal(&enumerated, thing, 0));
+        assert!((found - exact).abs() < MONTE_CARLO, "p({thing} = 0) is {exact}, sampled {found}");
+    }
+}
+
 /// p(x_{n+1} | x_1 … x_n) is a quotient of marginal likelihoods.
 #[test]
 fn the_predictive_is_a_quotient_of_marginal_likelihoods() {

@@ -1,6 +1,6 @@
 //! What the thresholds of a run promise, in one or two sentences that promise no more than the method does.
 
-use coin_schemas::calibration::{Calibration, NonconformityScore};
+use coin_schemas::calibration::{Calibration, History, NonconformityScore};
 use coin_schemas::report::{Gate, Report, Stopped};
 
 use crate::output::layout::{count, percent};
@@ -9,8 +9,8 @@ use crate::output::plain_text;
 /// What may be relied on, and from what data that follows.
 pub(crate) fn guarantee(report: &Report) -> String {
     let Some(calibration) = &report.calibration else { return no_guarantee(report) };
-    if calibration.samples == 0 {
-        return "none: the calibration was made from no data. Make one with host calibrate.".to_owned();
+    if let Some(reason) = voids(calibration, report) {
+        return format!("none: {reason}.");
     }
     let promise = match report.gate {
         Gate::Risk => risk(calibration),
@@ -36,14 +36,38 @@ pub(crate) fn guarantee(report: &Report) -> String {
     format!("{promise} ({}).{beyond}", made_from(calibration))
 }
 
+/// Why what a calibration promises does not hold in this run.
+fn voids(calibration: &Calibration, report: &Report) -> Option<&'static str> {
+    if calibration.samples == 0 {
+        return Some("the calibration was made from no data. Make one with host calibrate");
+    }
+    if calibration.model != report.model {
+        return Some("the thresholds were made for another model, whose scores mean something else");
+    }
+    if calibration.withheld != report.parameters.withheld {
+        return Some("the thresholds were made for a model that was told more or less than this one");
+    }
+    if calibration.history == History::TrainingDays {
+        return Some(
+            "the thresholds were made from the first days of homes, and whole histories are scored otherwise",
+        );
+    }
+    if calibration.episodes.contains(&report.episode) {
+        return Some(
+            "a home of this name is among those that the thresholds were made from, so they know what they judge",
+        );
+    }
+    None
+}
+
 fn risk(calibration: &Calibration) -> String {
     let risk = share(calibration.risk);
     if calibration.lambda > 1.0 {
         return format!("no threshold keeps wrong owner sets at {risk}, so everything was up for a question");
     }
     format!(
-        "things at least {} sure are settled without a question, and at most {risk} of all owner sets are \
-         expected to be wrong",
+        "things at least {} sure are settled without a question, and at most {risk} of all things are expected \
+         to be settled at once and wrong",
         percent(calibration.lambda)
     )
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use coin_schemas::calibration::{Calibration, NonconformityScore};
+use coin_schemas::calibration::{Calibration, History, NonconformityScore};
 use coin_schemas::household::{
     ClassLabel, ObjectId, Owners, OwnershipBoolean, Score, Scores, Source, UsageType, UserName,
 };
@@ -283,6 +283,27 @@ fn nothing_follows_from_no_data() {
         guarantee::guarantee(&report),
         @"none: the calibration was made from no data. Make one with host calibrate."
     );
+}
+
+#[rstest]
+#[case::of_another_model(|report: &mut Report| report.model = "gpt-4o".to_owned(), "another model")]
+#[case::told_less(
+    |report: &mut Report| report.parameters.withheld = [coin_schemas::report::Withheld::Usage].into(),
+    "told more or less"
+)]
+#[case::from_the_first_days(
+    |report: &mut Report| report.calibration.as_mut().unwrap().history = History::TrainingDays,
+    "first days"
+)]
+#[case::from_this_home(
+    |report: &mut Report| report.calibration.as_mut().unwrap().episodes.push("small-house".to_owned()),
+    "a home of this name"
+)]
+fn thresholds_of_something_else_promise_nothing(#[case] change: fn(&mut Report), #[case] reason: &str) {
+    let mut report = report();
+    change(&mut report);
+    let said = guarantee::guarantee(&report);
+    assert!(said.starts_with("none: ") && said.contains(reason), "{said}");
 }
 
 #[test]

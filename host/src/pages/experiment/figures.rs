@@ -197,7 +197,8 @@ fn questions_and_accuracy(results: &ExperimentResults) -> Figure {
         paths,
     };
     let caption = "Every method where it ends: up and to the left is better. The oracle asks about exactly the things \
-                   that are wrong at once, which nobody can know; no method with these beliefs can lie above it.";
+                   that are wrong at once, which nobody can know; above it one gets only by answers that settle more than \
+                   their own thing.";
     figure("questions-and-accuracy.svg", title, caption, chart.svg())
 }
 

@@ -1,5 +1,7 @@
 //! From calibration samples to thresholds, and from thresholds to what is thought of one thing.
 
+mod built_in;
+
 use std::collections::BTreeSet;
 
 use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
@@ -11,22 +13,10 @@ use crate::conformal::risk::{Outcome, RiskSample, risk_threshold};
 use crate::conformal::{Level, label_set, split};
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::sharing::{ShareThresholds, detect_share};
-
-/// The name of the model that needs no service: the evidence model behind the chat-model interface.
-pub const EMBEDDED_MODEL: &str = "embedded";
+pub use built_in::{EMBEDDED_MODEL, embedded_calibration, score_of};
 
 /// Without a calibration a thing is settled where its best owner set has at least this probability.
 pub const UNCALIBRATED_CONFIDENCE: f64 = 0.95;
-
-const EMBEDDED_CALIBRATION: &str = include_str!("../../fixtures/calibrations/embedded.json");
-
-/// The calibration of the embedded model that the program carries.
-///
-/// # Errors
-/// If the file that was compiled in is no calibration.
-pub fn embedded_calibration() -> Result<Calibration, serde_json::Error> {
-    serde_json::from_str(EMBEDDED_CALIBRATION)
-}
 
 /// A thing of a calibration household, scored by the model and with its true owners.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,6 +154,13 @@ pub fn too_few_samples(samples: usize, levels: Levels) -> Vec<TooFewSamples> {
     lacking
 }
 
+/// The least number of households with which what λ̂ promises holds for homes taken as whole homes, however alike the
+/// things of one home are: their losses average over households, and a household is one draw. With fewer the promise
+/// is that of independent things, which things of one home are not.
+pub fn households_wanted(levels: Levels) -> usize {
+    levels.risk.least_samples()
+}
+
 /// What the gates compare with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Thresholds {
@@ -214,7 +211,12 @@ impl Thresholds {
     /// The thresholds of a model by name: the built-in ones of the embedded model, none for any other.
     pub fn for_model(model: Option<&str>) -> Self {
         match model {
-            Some(EMBEDDED_MODEL) => embedded_calibration().as_ref().map_or(Self::Uncalibrated, Self::from),
+            Some(EMBEDDED_MODEL) => {
+                match embedded_calibration(NonconformityScore::AllOwners, &BTreeSet::new()) {
+                    Ok(Some(calibration)) => Self::from(&calibration),
+                    Ok(None) | Err(_) => Self::Uncalibrated,
+                }
+            }
             _ => Self::Uncalibrated,
         }
     }
