@@ -33,6 +33,8 @@ const ASTERISK: &str = "Ours, mean ± standard deviation over all runs; in brack
                         so that between two such methods an asterisk says that they differ on these homes, and not \
                         that they would on others.";
 
+const READ_AS_FIRST: &str = "To be read as Table 2.";
+
 /// All tables, in the order in which they are read.
 pub fn tables(results: &ExperimentResults) -> Vec<Table> {
     let mut tables = vec![accuracy(results, "Table 2. All things", None), questions_and_cost(results)];
@@ -136,7 +138,7 @@ fn accuracy(results: &ExperimentResults, title: &str, usage_type: Option<UsageTy
     let columns = std::iter::once("Method").chain(METRICS.iter().map(|&(_, name)| name));
     Table {
         title: title.to_owned(),
-        note: ASTERISK.to_owned(),
+        note: if usage_type.is_none() { ASTERISK } else { READ_AS_FIRST }.to_owned(),
         header: columns.map(str::to_owned).collect(),
         rows: present(results, &COMPARED)
             .map(|(method, of_method)| {
@@ -153,7 +155,7 @@ fn ablation(results: &ExperimentResults) -> Table {
     Table {
         title: "Table 8. Ablations".to_owned(),
         note: format!(
-            "{ASTERISK} Our ablations are of COIN with its default gate, the paper's of its own; the embedded model \
+            "{READ_AS_FIRST} Our ablations are of COIN with its default gate, the paper's of its own; the embedded model \
              reads a role or an occupation only where common sense knows the class."
         ),
         header: columns.map(str::to_owned).collect(),

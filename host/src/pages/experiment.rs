@@ -52,11 +52,13 @@ pub fn index(results: &ExperimentResults, tables: &[Table], figures: &[Figure]) 
             }
             section #figures {
                 h2 { "Figures" }
-                @for figure in figures {
-                    figure {
-                        // The figure is markup of this program, whose texts were escaped when it was made.
-                        (PreEscaped(&figure.svg))
-                        figcaption { strong { (figure.title) ". " } (figure.caption) }
+                div.pair {
+                    @for figure in figures {
+                        figure {
+                            // The figure is markup of this program, whose texts were escaped when it was made.
+                            (PreEscaped(&figure.svg))
+                            figcaption { strong { (figure.title) ". " } (figure.caption) }
+                        }
                     }
                 }
             }
@@ -123,7 +125,7 @@ fn key_figures(results: &ExperimentResults) -> Markup {
             }
             @if let Some(wrong) = wrong {
                 div { dt { "wrong in unseen homes" } dd { (format!("{:.2} %", 100.0 * wrong.share))
-                    small { (format!("promised: at most {:.1} %, {} homes", 100.0 * wrong.promised, wrong.households)) } } }
+                    small { (format!("aimed at: at most {:.1} %, over {} homes", 100.0 * wrong.promised, wrong.households)) } } }
             }
         }
     }

@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use coin_tests::{Finished, Program, assert_conforms, fixture, is_slow_run, published_schema, small_house};
+use coin_tests::{
+    Finished, Program, assert_conforms, fixture, is_slow_run, published_schema, repository, small_house,
+};
 use rstest::rstest;
 use serde_json::Value;
 
@@ -102,6 +104,31 @@ fn the_heuristics_get_the_papers_rows_in_an_experiment(
     let of_method = &found["methods"][method];
     let spreads = usage_type.map_or(&of_method["overall"], |kind| &of_method["by_usage_type"][kind]);
     assert_eq!(METRICS.map(|metric| three_decimals(spreads[metric]["mean"].as_f64().unwrap())), row);
+}
+
+/// The tables in the documentation are those of its command, but for the times.
+#[test]
+fn the_documented_tables_are_what_the_command_makes() {
+    if cfg!(debug_assertions) || !is_slow_run("the documented tables") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("results");
+    experiment(&small_house(), &out, &["--quiet"]).expect_code(0);
+    let timeless = |path: &Path| -> Vec<String> {
+        let text = fs::read_to_string(path).unwrap();
+        let timed = text.split("\n## ").filter(|section| section.starts_with("Table 3"));
+        assert_eq!(timed.count(), 1);
+        let kept = text.split("\n## ").filter(|section| !section.starts_with("Table 3"));
+        kept.map(str::to_owned).collect()
+    };
+    let documented = repository().join("docs/experiment");
+    assert_eq!(timeless(&out.join("tables.md")), timeless(&documented.join("tables.md")));
+    for figure in fs::read_dir(out.join("figures")).unwrap() {
+        let name = figure.unwrap().file_name();
+        let [made, kept] = [&out, &documented].map(|at| fs::read(at.join("figures").join(&name)).unwrap());
+        assert!(made == kept, "{} is another; copy the figures anew", name.display());
+    }
 }
 
 /// What the whole experiment is to reach: ten trials of nine methods on 34 things in a minute; COIN at least as right
