@@ -12,6 +12,7 @@ mod tests;
 pub use bars::{Bar, BarChart, BarGroup};
 pub use intervals::{Interval, IntervalChart};
 pub use lines::{LineChart, Point, Series, Shape};
+pub(crate) use scale::tenth_below;
 pub use scatter::{Dot, ScatterChart};
 
 use maud::{Markup, PreEscaped, html};

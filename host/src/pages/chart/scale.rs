@@ -20,6 +20,11 @@ impl Scale {
     }
 }
 
+/// The tenth below the least of some shares, where an axis may begin that ends at 1.
+pub(crate) fn tenth_below(shares: impl Iterator<Item = f64>) -> f64 {
+    ((shares.fold(1.0, f64::min) * 10.0).floor() / 10.0).clamp(0.0, 0.9)
+}
+
 /// Round values between two ends, about five, with their texts.
 pub(super) fn ticks(low: f64, high: f64) -> Vec<(f64, String)> {
     let span = high - low;

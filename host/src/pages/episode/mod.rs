@@ -17,7 +17,7 @@ use coin_schemas::household::{Background, ObjectId, Owners, Source};
 use coin_schemas::report::{AnswerStatus, Report};
 use maud::{Markup, html};
 
-use super::chart::{LineChart, Look, Point, Series, Shape};
+use super::chart::{LineChart, Look, Point, Series, Shape, tenth_below};
 use super::page;
 use crate::evidence::Evidence;
 use crate::output::conclusions::{facts, is_wrong, owners_in_words, percent};
@@ -259,13 +259,13 @@ fn by_question(report: &Report, history: &[BTreeMap<ObjectId, Belief>]) -> Marku
             ("Confidence by question", "mean confidence", vec![series("mean confidence", 0, sureness)])
         }
     };
-    let least = drawn.iter().flat_map(|series| &series.points).map(|point| point.y).fold(1.0, f64::min);
+    let drawn_values = drawn.iter().flat_map(|series| &series.points).map(|point| point.y);
     let chart = LineChart {
         title: title.to_owned(),
         description: series_in_words(&drawn),
         x_label: "questions asked".to_owned(),
         y_label: label.to_owned(),
-        lowest: ((least * 10.0).floor() / 10.0).clamp(0.0, 0.9),
+        lowest: tenth_below(drawn_values),
         series: drawn,
     };
     html! { figure { (chart.svg()) figcaption { (title) ". Before the first question and after each one." } } }

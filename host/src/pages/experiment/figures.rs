@@ -7,7 +7,7 @@ use maud::Markup;
 use super::method_name;
 use crate::pages::chart::{
     Bar, BarChart, BarGroup, Dot, Interval, IntervalChart, LineChart, Look, Point, ScatterChart, Series,
-    Shape,
+    Shape, tenth_below,
 };
 use crate::pages::thousands;
 
@@ -100,13 +100,6 @@ fn series(method: Method, curve: &[StepSpread]) -> Series {
     }
 }
 
-/// The tenth below everything that is drawn.
-fn lowest(series: &[Series]) -> f64 {
-    let values = series.iter().flat_map(|series| &series.points).map(|point| point.y - point.spread);
-    let least = values.fold(1.0, f64::min);
-    ((least * 10.0).floor() / 10.0).clamp(0.0, 0.9)
-}
-
 /// Where each curve begins and ends, in words.
 fn described(series: &[Series]) -> String {
     let each = series.iter().filter_map(|series| {
@@ -122,7 +115,9 @@ fn curves(title: &str, series: Vec<Series>) -> Markup {
         description: described(&series),
         x_label: QUESTIONS.to_owned(),
         y_label: ACCURACY.to_owned(),
-        lowest: lowest(&series),
+        lowest: tenth_below(
+            series.iter().flat_map(|series| &series.points).map(|point| point.y - point.spread),
+        ),
         series,
     }
     .svg()
@@ -185,14 +180,13 @@ fn questions_and_accuracy(results: &ExperimentResults) -> Figure {
     if !results.oracle.is_empty() {
         paths.push(path("oracle: only what is wrong", Look(6), &results.oracle));
     }
-    let least = dots.iter().map(|dot| dot.y).fold(1.0, f64::min);
     let named = dots.iter().map(|dot| format!("{}: {:.1} questions, {:.3}", dot.name, dot.x, dot.y));
     let chart = ScatterChart {
         title: title.to_owned(),
         description: format!("{}.", named.collect::<Vec<_>>().join("; ")),
         x_label: QUESTIONS.to_owned(),
         y_label: ACCURACY.to_owned(),
-        lowest: ((least * 10.0).floor() / 10.0).clamp(0.0, 0.9),
+        lowest: tenth_below(dots.iter().map(|dot| dot.y)),
         dots,
         paths,
     };
@@ -273,13 +267,9 @@ fn by_method(results: &ExperimentResults) -> Figure {
             BarGroup { name: method_name(method).to_owned(), bars }
         })
         .collect();
-    let each = groups.iter().map(|group| {
-        let bars: Vec<String> = group.bars.iter().map(|bar| format!("{} {}", bar.name, bar.label)).collect();
-        format!("{}: {}", group.name, bars.join(", "))
-    });
     let chart = BarChart {
         title: title.to_owned(),
-        description: format!("{}.", each.collect::<Vec<_>>().join("; ")),
+        description: bars_in_words(&groups),
         label: ACCURACY.to_owned(),
         highest: 1.0,
         groups,
@@ -290,6 +280,15 @@ fn by_method(results: &ExperimentResults) -> Figure {
         "At the end of each run; the thin line is one standard deviation.",
         chart.svg(),
     )
+}
+
+/// Every bar's value, in words.
+fn bars_in_words(groups: &[BarGroup]) -> String {
+    let each = groups.iter().map(|group| {
+        let bars: Vec<String> = group.bars.iter().map(|bar| format!("{} {}", bar.name, bar.label)).collect();
+        format!("{}: {}", group.name, bars.join(", "))
+    });
+    format!("{}.", each.collect::<Vec<_>>().join("; "))
 }
 
 /// Both schemes as parts of the paper's; nothing where one of them did not run.
@@ -316,13 +315,9 @@ fn cost(results: &ExperimentResults) -> Option<Figure> {
         group("Questions", papers.questions.mean, ours.questions.mean),
     ];
     let highest = groups.iter().flat_map(|group| &group.bars).map(|bar| bar.value).fold(1.0, f64::max);
-    let each = groups.iter().map(|group| {
-        let bars: Vec<String> = group.bars.iter().map(|bar| format!("{} {}", bar.name, bar.label)).collect();
-        format!("{}: {}", group.name, bars.join(", "))
-    });
     let chart = BarChart {
         title: title.to_owned(),
-        description: format!("{}.", each.collect::<Vec<_>>().join("; ")),
+        description: bars_in_words(&groups),
         label: "as a part of the paper's scheme".to_owned(),
         highest,
         groups,
