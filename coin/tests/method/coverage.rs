@@ -305,6 +305,7 @@ fn risk_control_wants_homes_and_not_things_alone() {
     assert!(too_few_samples(3 * 34, levels).is_empty());
     let few = losses_in_a_fresh_home(3, epsilon, 20_000);
     let many = losses_in_a_fresh_home(households_wanted(levels), epsilon, 4_000);
+    println!("three homes: {few:.4}, enough homes: {many:.4}");
     assert!(few > 1.3 * epsilon.value(), "{few}");
     assert!(many < 1.1 * epsilon.value(), "{many}");
 }
