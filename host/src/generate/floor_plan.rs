@@ -1,10 +1,12 @@
 //! Where things are: rooms on one floor, and in every room the spots of its people and the common ones.
 
+use coin_schemas::household::UsageType;
 use rand::RngExt;
+use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::belongings::Belonging;
-use super::catalogue::Kept;
+use super::catalogue::{Handling, Kept};
 use super::parameters::PeopleTemplate;
 use super::people::{Bedroom, Person};
 use super::random::normal;
@@ -13,8 +15,13 @@ use super::random::normal;
 const SPREAD: f64 = 0.18;
 /// How much its height varies, in metres.
 const HEIGHT_SPREAD: f64 = 0.04;
-/// The share of the things in their owner's spots that have wandered to the owner's desk or bed.
+/// The share of the carried things in somebody's spots that have wandered to that person's desk or bed.
 const WANDERED: f64 = 0.4;
+/// The share of the carried things of several owners that one of them keeps. Were there none, a person's own spot
+/// would give away that its things have one owner.
+const WITH_ONE_OF_THE_OWNERS: f64 = 0.25;
+/// The share of the lent things that would be in their owner's spot and are in a borrower's.
+const WITH_A_BORROWER: f64 = 0.15;
 /// The common spots of a room: tables, shelves, sills.
 const COMMON_SPOTS: usize = 2;
 /// Nothing lies closer to a wall, in metres.
@@ -85,9 +92,9 @@ impl FloorPlan {
         Self { rooms, common_rooms, spots }
     }
 
-    /// Puts a thing somewhere. A thing of one owner is in the owner's own spot for such things with the
-    /// probability `cohesion` (of these, two in five have wandered to the owner's desk or bed); anything else is
-    /// on a common spot of the room where such things are kept.
+    /// Puts a thing somewhere: in the spot for such things of the person who keeps it, or, where nobody does, on a
+    /// common spot of the room where such things are kept. Two in five of the carried things that somebody keeps
+    /// have wandered to that person's desk or bed; what is not carried stays in its room.
     pub(super) fn place(
         &self,
         belonging: &Belonging,
@@ -95,16 +102,17 @@ impl FloorPlan {
         generator: &mut ChaCha8Rng,
     ) -> Placement {
         let kept = belonging.thing.kept;
-        let (room, spot) = match belonging.owners.as_slice() {
-            [owner] if generator.random_bool(cohesion) => {
-                let kept = match (generator.random_bool(WANDERED), generator.random_bool(0.5)) {
+        let (room, spot) = match keeper(belonging, cohesion, generator) {
+            Some(person) => {
+                let wandered = is_carried(belonging) && generator.random_bool(WANDERED);
+                let kept = match (wandered, generator.random_bool(0.5)) {
                     (false, _) => kept,
                     (true, false) => Kept::Desk,
                     (true, true) => Kept::Bedside,
                 };
-                self.spots[*owner][kept as usize]
+                self.spots[person][kept as usize]
             }
-            _ => {
+            None => {
                 let room = self.common_rooms[kept as usize];
                 (room, self.rooms[room].common[generator.random_range(0..COMMON_SPOTS)])
             }
@@ -113,6 +121,27 @@ impl FloorPlan {
         let [x, y] = room.clamp(spot.map(|metres| metres + SPREAD * normal(generator)));
         let z = (belonging.thing.height + HEIGHT_SPREAD * normal(generator)).max(0.02);
         Placement { position: [x, y, z].map(rounded), room: room.name.clone() }
+    }
+}
+
+fn is_carried(belonging: &Belonging) -> bool {
+    belonging.thing.handling == Handling::Carried
+}
+
+/// In whose spots a thing is. Of one owner's, that person with the probability `cohesion`, though some of what is
+/// lent is still with a borrower; of several owners', at times one of them.
+fn keeper(belonging: &Belonging, cohesion: f64, generator: &mut ChaCha8Rng) -> Option<usize> {
+    let is_lent = is_carried(belonging) && belonging.usage_type == UsageType::TemporarySharing;
+    match belonging.owners.as_slice() {
+        [owner] if generator.random_bool(cohesion) => match belonging.others.choose(generator) {
+            Some(&borrower) if is_lent && generator.random_bool(WITH_A_BORROWER) => Some(borrower),
+            _ => Some(*owner),
+        },
+        [_] => None,
+        owners if is_carried(belonging) && generator.random_bool(WITH_ONE_OF_THE_OWNERS) => {
+            owners.choose(generator).copied()
+        }
+        _ => None,
     }
 }
 
