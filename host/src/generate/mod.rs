@@ -6,7 +6,8 @@
 //! places in the home and synthetic features that carry some sign of class and owner.
 //!
 //! [`Protocol`] names the kinds of home, [`RoutineParameters`] is all that tells them apart. [`generate`] is
-//! pure: the same protocol and seed give the same episode on every platform. Nothing is read from other data.
+//! pure: the same protocol and seed give the same episode on every platform. Nothing is read from other data;
+//! [`generate_homer`] draws a home that lives by a data set instead.
 
 mod arguments;
 mod belongings;
@@ -37,7 +38,7 @@ use coin_schemas::episode::{CaptionLine, Episode, EpisodeObject, Truth};
 use coin_schemas::household::{Background, ClassLabel, InvalidValue, ObjectId, Position, UserName};
 use coin_schemas::tools::display_name;
 
-pub use arguments::{GenerateArguments, HomerArguments, run, run_homer};
+pub use arguments::{GenerateArguments, HomerArguments, HomesArguments, run, run_homer};
 pub use features::Feature;
 pub use parameters::{FirstDay, OwnerSetSizes, PeopleTemplate, Protocol, RoutineParameters, Structure};
 pub use write::{WriteError, write};
@@ -100,6 +101,37 @@ impl Habits {
     }
 }
 
+/// Who shares the place in which days, before anything happens there.
+struct Household<'a> {
+    kind: String,
+    seed: u64,
+    parameters: &'a RoutineParameters,
+    habits: Habits,
+    people: Vec<Person>,
+    days: Vec<DayKind>,
+}
+
+impl<'a> Household<'a> {
+    fn draw(settings: &RoutineSettings, parameters: &'a RoutineParameters, routines: Routines) -> Self {
+        let kind = routines.kind(settings.protocol);
+        let habits = Habits::draw(parameters, &mut stream(&kind, settings.seed, Stream::Habits));
+        let people = people::draw(parameters.people, &mut stream(&kind, settings.seed, Stream::People));
+        let days = (0..parameters.days).map(|day| day_kind(nth_day(habits.first_day, day.into()))).collect();
+        Self { kind, seed: settings.seed, parameters, habits, people, days }
+    }
+
+    /// The random numbers of one concern of this home.
+    fn random(&self, concern: Stream) -> ChaCha8Rng {
+        stream(&self.kind, self.seed, concern)
+    }
+}
+
+/// What there is in a home and what is done with each thing, in the same order.
+struct Life {
+    belongings: Vec<Belonging>,
+    histories: Vec<ThingHistory>,
+}
+
 /// A home with all that happened there, the words and the pictures still missing.
 struct Story {
     people: Vec<Person>,
@@ -112,51 +144,49 @@ struct Story {
 
 /// Where the life of a home comes from.
 #[derive(Debug, Clone, Copy)]
-enum Routines<'a> {
+enum Routines {
     /// Our own catalogue and week plans.
     Own,
     /// Schedules and scripts of the HOMER data set.
-    Homer(&'a homer::HomerData),
+    Homer,
 }
 
-impl Routines<'_> {
+impl Routines {
     /// The name of the kind of home with these routines.
     fn kind(self, protocol: Protocol) -> String {
         match self {
             Self::Own => protocol.name().to_owned(),
-            Self::Homer(_) => format!("homer-{}", protocol.name()),
+            Self::Homer => format!("homer-{}", protocol.name()),
         }
     }
 }
 
 impl Story {
-    fn draw(settings: &RoutineSettings, parameters: &RoutineParameters, routines: Routines<'_>) -> Self {
-        let kind = routines.kind(settings.protocol);
-        let random = |concern| stream(&kind, settings.seed, concern);
-        let habits = Habits::draw(parameters, &mut random(Stream::Habits));
-        let people = people::draw(parameters.people, &mut random(Stream::People));
-        let days: Vec<DayKind> =
-            (0..parameters.days).map(|day| day_kind(nth_day(habits.first_day, day.into()))).collect();
-        let (belongings, histories) = match routines {
-            Routines::Own => own_life(&people, &days, parameters, &habits, random),
-            Routines::Homer(data) => {
-                homer::life(data, &people, parameters, habits.role_fit, days.len(), random)
-            }
-        };
-
-        let generator = &mut random(Stream::Sightings);
-        let sightings = histories
+    /// Watches the life of a household and finds its things a place.
+    fn of(household: Household<'_>, life: Life) -> Self {
+        let (parameters, habits) = (household.parameters, &household.habits);
+        let generator = &mut household.random(Stream::Sightings);
+        let members = household.people.len();
+        let sightings = life
+            .histories
             .iter()
-            .map(|history| {
-                sightings::watch(&history.sessions, people.len(), parameters, habits.reach, generator)
-            })
+            .map(|history| sightings::watch(&history.sessions, members, parameters, habits.reach, generator))
             .collect();
 
-        let generator = &mut random(Stream::Floor);
-        let floor = FloorPlan::draw(parameters.people, &people, generator);
-        let placements =
-            belongings.iter().map(|belonging| floor.place(belonging, habits.cohesion, generator)).collect();
-        Self { people, belongings, placements, sightings, first_day: habits.first_day }
+        let generator = &mut household.random(Stream::Floor);
+        let floor = FloorPlan::draw(parameters.people, &household.people, generator);
+        let placements = life
+            .belongings
+            .iter()
+            .map(|belonging| floor.place(belonging, habits.cohesion, generator))
+            .collect();
+        Self {
+            first_day: habits.first_day,
+            people: household.people,
+            belongings: life.belongings,
+            placements,
+            sightings,
+        }
     }
 
     /// Puts what was seen into words, in order of time. A line that is there already is the same sighting.
@@ -238,26 +268,21 @@ impl Story {
 }
 
 /// What there is in a home with our own routines, and what happens to it.
-fn own_life(
-    people: &[Person],
-    days: &[DayKind],
-    parameters: &RoutineParameters,
-    habits: &Habits,
-    random: impl Fn(Stream) -> ChaCha8Rng,
-) -> (Vec<Belonging>, Vec<ThingHistory>) {
+fn own_life(household: &Household<'_>) -> Life {
+    let Household { parameters, habits, people, days, .. } = household;
     let mut belongings =
-        belongings::draw(people, parameters, habits.role_fit, &mut random(Stream::Belongings));
+        belongings::draw(people, parameters, habits.role_fit, &mut household.random(Stream::Belongings));
     belongings::hand_down(
         &mut belongings,
         parameters.handed_down,
         days.len(),
-        &mut random(Stream::HandDowns),
+        &mut household.random(Stream::HandDowns),
     );
-    let plans = plan::week(people, days, &mut random(Stream::Plans));
+    let plans = plan::week(people, days, &mut household.random(Stream::Plans));
     let count = |belonging: &Belonging, generator: &mut ChaCha8Rng| {
         sessions::session_count(belonging.thing, habits.busyness, days.len(), &parameters.sessions, generator)
     };
-    let generator = &mut random(Stream::Sessions);
+    let generator = &mut household.random(Stream::Sessions);
     let histories: Vec<ThingHistory> = match parameters.structure {
         Structure::Paper => paper::histories(&belongings, &plans, count, generator),
         Structure::Drawn => belongings
@@ -269,54 +294,73 @@ fn own_life(
             })
             .collect(),
     };
-    (belongings, histories)
+    Life { belongings, histories }
+}
+
+fn own_story(settings: &RoutineSettings, parameters: &RoutineParameters) -> Story {
+    let household = Household::draw(settings, parameters, Routines::Own);
+    let life = own_life(&household);
+    Story::of(household, life)
+}
+
+fn homer_story(
+    settings: &RoutineSettings,
+    parameters: &RoutineParameters,
+    data: &homer::HomerData,
+) -> Result<Story, homer::HomerError> {
+    let household = Household::draw(settings, parameters, Routines::Homer);
+    let life = homer::life(data, &household)?;
+    Ok(Story::of(household, life))
 }
 
 /// Draws a home with our own routines. Equal settings give equal episodes.
 pub fn generate(settings: &RoutineSettings) -> GeneratedEpisode {
-    generate_with(settings, Routines::Own)
+    let parameters = settings.protocol.parameters();
+    told(settings, &parameters, Routines::Own, &own_story(settings, &parameters))
 }
 
 /// Draws a home that lives by schedules sampled from HOMER. Equal settings and data give equal episodes.
 ///
 /// # Errors
-/// If the protocol is one of a place that HOMER has no data of.
+/// If the protocol is one of a place that HOMER has no data of, or the data are too few for it.
 pub fn generate_homer(
     settings: &RoutineSettings,
     data: &homer::HomerData,
 ) -> Result<GeneratedEpisode, homer::HomerError> {
-    match settings.protocol {
-        Protocol::Office => Err(homer::HomerError::NoSuchPlace),
-        _ => Ok(generate_with(settings, Routines::Homer(data))),
+    if settings.protocol == Protocol::Office {
+        return Err(homer::HomerError::NoSuchPlace);
     }
+    let parameters = settings.protocol.parameters();
+    let story = homer_story(settings, &parameters, data)?;
+    Ok(told(settings, &parameters, Routines::Homer, &story))
 }
 
-fn generate_with(settings: &RoutineSettings, routines: Routines<'_>) -> GeneratedEpisode {
-    let parameters = settings.protocol.parameters();
-    let story = Story::draw(settings, &parameters, routines);
+/// Puts a story into words and pictures.
+fn told(
+    settings: &RoutineSettings,
+    parameters: &RoutineParameters,
+    routines: Routines,
+    story: &Story,
+) -> GeneratedEpisode {
     let kind = routines.kind(settings.protocol);
     let random = |concern| stream(&kind, settings.seed, concern);
     let captions = story.captions(parameters.paraphrased, &mut random(Stream::Words));
     let features = features::draw(&story.belongings, &mut random(Stream::Features));
     let last_day = nth_day(story.first_day, usize::from(parameters.days).saturating_sub(1));
+    let (maker, licence) = match routines {
+        Routines::Own => ("routine generator", ""),
+        Routines::Homer => ("HOMER generator", homer::LICENCE_NOTE),
+    };
     let episode = Episode {
         name: format!("{kind}-{}", settings.seed),
         description: Some(format!(
-            "{} things of {} people over {} days, drawn by the {} (protocol {}, seed {}). The \
-             visual features are synthetic: they carry a sign of class and owner set and come from no camera.{}",
+            "{} things of {} people over {} days, drawn by the {maker} (protocol {}, seed {}). The \
+             visual features are synthetic: they carry a sign of class and owner set and come from no camera.{licence}",
             story.belongings.len(),
             story.people.len(),
             parameters.days,
-            match routines {
-                Routines::Own => "routine generator",
-                Routines::Homer(_) => "HOMER generator",
-            },
             settings.protocol.name(),
             settings.seed,
-            match routines {
-                Routines::Own => "",
-                Routines::Homer(_) => homer::LICENCE_NOTE,
-            },
         )),
         users: story.users(),
         objects: story.objects(),

@@ -4,7 +4,8 @@ use std::ops::{Range, RangeInclusive};
 
 use clap::ValueEnum;
 
-/// A kind of home, and how well it is watched.
+/// A kind of home, and how well it is watched. What is exact in [`Paper`](Self::Paper) is so with our own routines; with
+/// HOMER's there are the paper's owner sets and about its number of captions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, ValueEnum)]
 pub enum Protocol {
     /// The paper's family in a week whose counts and two heuristics are exactly those of the paper's tables
@@ -141,7 +142,8 @@ pub enum PeopleTemplate {
 /// How usage types and owner sets come about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Structure {
-    /// Exactly as the paper's tables imply, its captions counted and its heuristics matched.
+    /// Exactly as the paper's tables imply. With our own routines its captions are counted and its heuristics matched
+    /// too; HOMER's schedules say themselves how much there is to see, and who is last.
     Paper,
     /// Drawn around the same proportions, which vary from home to home.
     Drawn,

@@ -19,7 +19,8 @@ pub(super) const CAPTIONS_FILE: &str = "captions.jsonl";
 pub(super) const EMBEDDINGS_FILE: &str = "embeddings.npy";
 pub(super) const TRUTH_FILE: &str = "truth.json";
 
-/// Why an episode was not written.
+/// Why an episode was not written. The whole reason is in the message, so nothing is named as its source: whoever
+/// prints the chain would say it twice.
 #[derive(Debug, Error)]
 pub enum WriteError {
     /// The folder holds other people's files.
@@ -39,20 +40,20 @@ pub enum WriteError {
         path: PathBuf,
     },
     /// The operating system refused.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {reason}", path.display())]
     Io {
         /// The file or folder.
         path: PathBuf,
         /// What it said.
-        source: io::Error,
+        reason: io::Error,
     },
     /// A value has no JSON form.
-    #[error("cannot write {file} as JSON: {source}")]
+    #[error("cannot write {file} as JSON: {reason}")]
     Json {
         /// The file.
         file: &'static str,
         /// What is wrong.
-        source: serde_json::Error,
+        reason: serde_json::Error,
     },
 }
 
@@ -71,7 +72,7 @@ pub fn write(episode: &GeneratedEpisode, folder: &Path) -> Result<(), WriteError
     ];
     let refused = |path: &Path| {
         let path = path.to_owned();
-        move |source| WriteError::Io { path, source }
+        move |reason| WriteError::Io { path, reason }
     };
     fs::create_dir_all(folder).map_err(refused(folder))?;
     let mut renames = Vec::with_capacity(files.len());
@@ -93,7 +94,7 @@ fn check_folder(folder: &Path) -> Result<(), WriteError> {
         Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
             return Err(WriteError::NotAFolder { path: folder.to_owned() });
         }
-        Err(source) => return Err(WriteError::Io { path: folder.to_owned(), source }),
+        Err(reason) => return Err(WriteError::Io { path: folder.to_owned(), reason }),
     };
     if entries.next().is_some() && !folder.join(EPISODE_FILE).is_file() {
         return Err(WriteError::NotAnEpisode { folder: folder.to_owned() });
@@ -102,7 +103,7 @@ fn check_folder(folder: &Path) -> Result<(), WriteError> {
 }
 
 fn json_bytes(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, WriteError> {
-    let mut bytes = serde_json::to_vec_pretty(value).map_err(|source| WriteError::Json { file, source })?;
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(|reason| WriteError::Json { file, reason })?;
     bytes.push(b'\n');
     Ok(bytes)
 }
@@ -111,7 +112,7 @@ fn captions_bytes(episode: &GeneratedEpisode) -> Result<Vec<u8>, WriteError> {
     let mut bytes = Vec::new();
     for line in &episode.captions {
         serde_json::to_writer(&mut bytes, line)
-            .map_err(|source| WriteError::Json { file: CAPTIONS_FILE, source })?;
+            .map_err(|reason| WriteError::Json { file: CAPTIONS_FILE, reason })?;
         bytes.push(b'\n');
     }
     Ok(bytes)
@@ -129,5 +130,5 @@ fn embeddings_bytes(episode: &GeneratedEpisode, folder: &Path) -> Result<Vec<u8>
         writer.finish()?;
         Ok(bytes)
     };
-    encode().map_err(|source| WriteError::Io { path: folder.join(EMBEDDINGS_FILE), source })
+    encode().map_err(|reason| WriteError::Io { path: folder.join(EMBEDDINGS_FILE), reason })
 }

@@ -2,98 +2,29 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use thiserror::Error;
+
+use super::error::HomerError;
+use super::sampler::{COMING_HOME, LEAVING_HOME};
+use super::script::{self, Script, Verb};
 
 /// Where the folder keeps what.
-const HISTOGRAMS: &str = "personaBasedSchedules/cluster_histograms.json";
-const PERSONAS: &str = "personaBasedSchedules/optimized_persona.json";
-const SCRIPTS: &str = "executableScriptsByActivity";
-const SCENE: &str = "CustomScene2_graph.json";
+pub(super) const HISTOGRAMS: &str = "personaBasedSchedules/cluster_histograms.json";
+pub(super) const PERSONAS: &str = "personaBasedSchedules/optimized_persona.json";
+pub(super) const SCRIPTS: &str = "executableScriptsByActivity";
+pub(super) const SCENE: &str = "CustomScene2_graph.json";
 
 /// The hours of a histogram: from six in the morning to midnight.
 pub(super) const SLOTS: usize = 18;
+/// The hour of the first of them.
+const FIRST_HOUR: usize = 6;
 
 /// What is part of the building, and so nobody's thing.
 const FIXED: [&str; 9] =
     ["Rooms", "Furniture", "Floor", "Ceiling", "Walls", "Doors", "Windows", "Characters", "Lamps"];
-
-/// Why the data cannot be used.
-#[derive(Debug, Error)]
-pub enum HomerError {
-    /// A file or folder cannot be read.
-    #[error("cannot read {}: {source}; --data names the folder that holds {SCRIPTS}, personaBasedSchedules and {SCENE}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A file is not in its form.
-    #[error("{} is not in HOMER's form: {source}", path.display())]
-    Form {
-        /// The file.
-        path: PathBuf,
-        /// Where it differs.
-        source: serde_json::Error,
-    },
-    /// A histogram has another length or holds what is no probability.
-    #[error(
-        "{HISTOGRAMS}: cluster {cluster} of {activity:?} is not {SLOTS} numbers from 0 to 1, one for each hour from six"
-    )]
-    Histogram {
-        /// The activity.
-        activity: String,
-        /// The cluster.
-        cluster: usize,
-    },
-    /// A persona names a cluster that is not there.
-    #[error("{PERSONAS}: {persona} has cluster {cluster} of {activity:?}, which {HISTOGRAMS} does not hold")]
-    Persona {
-        /// The persona.
-        persona: String,
-        /// The activity.
-        activity: String,
-        /// The cluster.
-        cluster: usize,
-    },
-    /// A line of a script is not a step.
-    #[error("{}, line {line}: {given:?} is no step such as `[GRAB] <bowl> (1024) [5]`", path.display())]
-    Step {
-        /// The script.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// What stands there.
-        given: String,
-    },
-    /// There is nothing to live by.
-    #[error("{} holds {what}", path.display())]
-    Empty {
-        /// The folder.
-        path: PathBuf,
-        /// What is missing.
-        what: &'static str,
-    },
-    /// HOMER is a home.
-    #[error(
-        "HOMER is a home and knows no office; take another protocol, or `host generate routine --protocol office`"
-    )]
-    NoSuchPlace,
-}
-
-/// One step of a script: what is done with a thing.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct ScriptStep {
-    /// The verb as the script has it, such as `GRAB`.
-    pub(super) verb: String,
-    /// The class of the thing.
-    pub(super) class: String,
-}
 
 /// What is known of a class of things.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -101,16 +32,48 @@ pub(super) struct ClassFacts {
     /// The room in which the scene has it, where it has.
     pub(super) room: Option<String>,
     /// Everything that scripts do with it.
-    pub(super) verbs: BTreeSet<String>,
+    pub(super) verbs: BTreeSet<Verb>,
+}
+
+/// Somebody to live like.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Persona {
+    pub(super) name: String,
+    /// The share of each activity in each hour.
+    pub(super) hours: BTreeMap<String, [f64; SLOTS]>,
+}
+
+impl Persona {
+    /// Everything that the persona ever does.
+    pub(super) fn activities(&self) -> impl Iterator<Item = &str> {
+        self.hours.keys().map(String::as_str)
+    }
+
+    /// What the persona does at home or begins there, with the share of each hour.
+    pub(super) fn at_home(&self) -> impl Iterator<Item = (&str, &[f64; SLOTS])> {
+        let named = self.hours.iter().map(|(activity, hours)| (activity.as_str(), hours));
+        named.filter(|(activity, _)| *activity != COMING_HOME)
+    }
+
+    /// The share of an activity in an hour of the histogram.
+    pub(super) fn share(&self, activity: &str, hour: usize) -> f64 {
+        self.hours.get(activity).and_then(|hours| hours.get(hour)).copied().unwrap_or(0.0)
+    }
+
+    /// The sum of the shares of the busiest hour.
+    pub(super) fn busiest(&self) -> f64 {
+        let sum = |hour: usize| self.at_home().map(|(_, hours)| hours[hour]).sum::<f64>();
+        (0..SLOTS).map(sum).fold(0.0, f64::max)
+    }
 }
 
 /// The part of HOMER that days are sampled from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HomerData {
-    /// For every persona, the probability of each activity in each hour.
-    pub(super) personas: Vec<BTreeMap<String, Vec<f64>>>,
-    /// The ways to do each activity.
-    pub(super) scripts: BTreeMap<String, Vec<Vec<ScriptStep>>>,
+    pub(super) folder: PathBuf,
+    pub(super) personas: Vec<Persona>,
+    /// The ways to do each activity, at least one.
+    pub(super) scripts: BTreeMap<String, Vec<Script>>,
     /// The things that people handle.
     pub(super) classes: BTreeMap<String, ClassFacts>,
 }
@@ -140,54 +103,123 @@ impl HomerData {
     /// Reads a folder in the public data set's own layout.
     ///
     /// # Errors
-    /// The first file that is missing or not in its form.
+    /// The first file that is missing, damaged or not in its form, and the first thing of one file that another lacks.
     pub fn read(folder: &Path) -> Result<Self, HomerError> {
-        let personas = read_personas(folder)?;
-        let scene: Scene = read_json(&folder.join(SCENE))?;
         let scripts = read_scripts(&folder.join(SCRIPTS))?;
-        if personas.is_empty() || scripts.is_empty() {
-            let what = if personas.is_empty() { "no persona" } else { "no activity script" };
-            return Err(HomerError::Empty { path: folder.to_owned(), what });
-        }
+        let personas = read_personas(folder)?;
+        check(&personas, &scripts, &folder.join(PERSONAS))?;
+        let scene = read_scene(&folder.join(SCENE))?;
         let classes = classes(&scene, &scripts);
-        Ok(Self { personas, scripts, classes })
+        Ok(Self { folder: folder.to_owned(), personas, scripts, classes })
+    }
+
+    /// The error of a persona whose every day ends away from home.
+    pub(super) fn never_home(&self, persona: &Persona) -> HomerError {
+        HomerError::NeverHome { path: self.folder.join(PERSONAS), persona: persona.name.clone() }
     }
 }
 
 fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, HomerError> {
-    let text =
-        fs::read_to_string(path).map_err(|source| HomerError::Read { path: path.to_owned(), source })?;
-    serde_json::from_str(&text).map_err(|source| HomerError::Form { path: path.to_owned(), source })
+    let text = script::read_text(path)?;
+    serde_json::from_str(&text).map_err(|reason| HomerError::Form { path: path.to_owned(), reason })
 }
 
-/// A persona is, for every activity, a cluster of people who do it at the same hours, or none.
-fn read_personas(folder: &Path) -> Result<Vec<BTreeMap<String, Vec<f64>>>, HomerError> {
-    let histograms: BTreeMap<String, Vec<Vec<f64>>> = read_json(&folder.join(HISTOGRAMS))?;
-    for (activity, clusters) in &histograms {
-        for (cluster, hours) in clusters.iter().enumerate() {
-            if hours.len() != SLOTS || hours.iter().any(|share| !(0.0..=1.0).contains(share)) {
-                return Err(HomerError::Histogram { activity: activity.clone(), cluster });
-            }
+/// A cluster of people who do an activity at the same hours: what share of them does it in each.
+type Histogram = [f64; SLOTS];
+
+fn read_histograms(path: &Path) -> Result<BTreeMap<String, Vec<Histogram>>, HomerError> {
+    let given: BTreeMap<String, Vec<Vec<f64>>> = read_json(path)?;
+    let checked = |activity: &str, cluster: usize, shares: Vec<f64>| {
+        if let Some(hour) = shares.iter().position(|share| !(0.0..=1.0).contains(share)) {
+            return Err(HomerError::HistogramShare {
+                path: path.to_owned(),
+                activity: activity.to_owned(),
+                cluster,
+                hour: FIRST_HOUR + hour,
+                given: shares[hour],
+            });
         }
-    }
-    let personas: BTreeMap<String, BTreeMap<String, Option<usize>>> = read_json(&folder.join(PERSONAS))?;
-    personas
+        Histogram::try_from(shares).map_err(|shares| HomerError::HistogramLength {
+            path: path.to_owned(),
+            activity: activity.to_owned(),
+            cluster,
+            given: shares.len(),
+        })
+    };
+    given
         .into_iter()
-        .map(|(persona, activities)| {
-            activities
+        .map(|(activity, clusters)| {
+            let clusters: Result<Vec<Histogram>, HomerError> = clusters
                 .into_iter()
-                .filter_map(|(activity, cluster)| Some((activity, cluster?)))
-                .map(|(activity, cluster)| match histograms.get(&activity).and_then(|of| of.get(cluster)) {
-                    Some(hours) => Ok((activity, hours.clone())),
-                    None => Err(HomerError::Persona { persona: persona.clone(), activity, cluster }),
-                })
-                .collect()
+                .enumerate()
+                .map(|(cluster, shares)| checked(&activity, cluster, shares))
+                .collect();
+            Ok((activity, clusters?))
         })
         .collect()
 }
 
+/// A persona is, for every activity, a cluster of people who do it at the same hours, or none.
+fn read_personas(folder: &Path) -> Result<Vec<Persona>, HomerError> {
+    let histograms = read_histograms(&folder.join(HISTOGRAMS))?;
+    let path = folder.join(PERSONAS);
+    let given: BTreeMap<String, BTreeMap<String, Option<usize>>> = read_json(&path)?;
+    if given.is_empty() {
+        return Err(HomerError::Empty { path, what: "no persona" });
+    }
+    given
+        .into_iter()
+        .map(|(name, activities)| {
+            let mut hours = BTreeMap::new();
+            for (activity, cluster) in activities {
+                let Some(cluster) = cluster else { continue };
+                let clusters = histograms.get(&activity).map_or(&[][..], Vec::as_slice);
+                let Some(shares) = clusters.get(cluster) else {
+                    let (path, known) = (path.clone(), clusters.len());
+                    return Err(HomerError::UnknownCluster { path, persona: name, activity, cluster, known });
+                };
+                hours.insert(activity, *shares);
+            }
+            Ok(Persona { name, hours })
+        })
+        .collect()
+}
+
+/// Refuses a persona who has nothing to do, nothing to do it by, or no way home.
+fn check(
+    personas: &[Persona],
+    scripts: &BTreeMap<String, Vec<Script>>,
+    path: &Path,
+) -> Result<(), HomerError> {
+    for persona in personas {
+        let name = || persona.name.clone();
+        if let Some(activity) = persona.activities().find(|activity| !scripts.contains_key(*activity)) {
+            let activity = activity.to_owned();
+            return Err(HomerError::NoScript { path: path.to_owned(), persona: name(), activity });
+        }
+        if persona.busiest() <= 0.0 {
+            return Err(HomerError::IdlePersona { path: path.to_owned(), persona: name() });
+        }
+        let ever = |activity: &str| (0..SLOTS).any(|hour| persona.share(activity, hour) > 0.0);
+        if ever(LEAVING_HOME) && !ever(COMING_HOME) {
+            return Err(HomerError::NeverHome { path: path.to_owned(), persona: name() });
+        }
+    }
+    Ok(())
+}
+
+fn read_scene(path: &Path) -> Result<Scene, HomerError> {
+    let scene: Scene = read_json(path)?;
+    let missing = match scene.nodes.iter().any(|node| node.category == "Rooms") {
+        true => return Ok(scene),
+        false if scene.nodes.is_empty() => "no node",
+        false => "no node of the category Rooms",
+    };
+    Err(HomerError::Empty { path: path.to_owned(), what: missing })
+}
+
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, HomerError> {
-    let failed = |source| HomerError::Read { path: folder.to_owned(), source };
+    let failed = |reason| HomerError::Read { path: folder.to_owned(), reason };
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         paths.push(entry.map_err(failed)?.path());
@@ -197,58 +229,30 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, HomerError> {
     Ok(paths)
 }
 
-fn read_scripts(folder: &Path) -> Result<BTreeMap<String, Vec<Vec<ScriptStep>>>, HomerError> {
-    let mut scripts: BTreeMap<String, Vec<Vec<ScriptStep>>> = BTreeMap::new();
+fn read_scripts(folder: &Path) -> Result<BTreeMap<String, Vec<Script>>, HomerError> {
+    let mut scripts: BTreeMap<String, Vec<Script>> = BTreeMap::new();
     for activity in entries(folder)?.into_iter().filter(|path| path.is_dir()) {
         let name = activity.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         for path in entries(&activity)? {
             if path.extension().is_some_and(|extension| extension == "txt") {
-                scripts.entry(name.clone()).or_default().push(read_script(&path)?);
+                scripts.entry(name.clone()).or_default().push(script::read(&path)?);
             }
         }
+    }
+    if scripts.is_empty() {
+        return Err(HomerError::Empty { path: folder.to_owned(), what: "no activity script" });
     }
     Ok(scripts)
 }
 
-fn read_script(path: &Path) -> Result<Vec<ScriptStep>, HomerError> {
-    let text =
-        fs::read_to_string(path).map_err(|source| HomerError::Read { path: path.to_owned(), source })?;
-    text.lines()
-        .enumerate()
-        // A script may begin with a title and a description.
-        .skip_while(|(_, line)| !line.trim_start().starts_with('['))
-        .filter(|(_, line)| !line.trim().is_empty())
-        .filter_map(|(place, line)| {
-            let refuse = || HomerError::Step {
-                path: path.to_owned(),
-                line: place + 1,
-                given: line.chars().take(80).collect(),
-            };
-            step(line).ok_or_else(refuse).transpose()
-        })
-        .collect()
-}
-
-/// `[VERB] <thing> (id) …`: the first thing is the one that is handled; a step without a thing handles nothing.
-#[allow(clippy::option_option, reason = "a line may be malformed, and a step may be without a thing")]
-fn step(line: &str) -> Option<Option<ScriptStep>> {
-    let (verb, rest) = line.trim().strip_prefix('[')?.split_once(']')?;
-    if verb.is_empty() || !verb.chars().all(|letter| letter.is_ascii_uppercase()) {
-        return None;
-    }
-    let Some((_, rest)) = rest.split_once('<') else { return Some(None) };
-    let (class, _) = rest.split_once('>')?;
-    let class = class.strip_prefix("food_").or_else(|| class.strip_prefix("clothes_")).unwrap_or(class);
-    Some(Some(ScriptStep { verb: verb.to_owned(), class: class.replace('_', " ") }))
+/// The words for HOMER's name of a class: `food_peanut_butter` is peanut butter.
+pub(super) fn class_label(name: &str) -> String {
+    let name = name.strip_prefix("food_").or_else(|| name.strip_prefix("clothes_")).unwrap_or(name);
+    name.replace('_', " ")
 }
 
 /// The classes that somebody takes or switches on in a script and that are no part of the building.
-fn classes(scene: &Scene, scripts: &BTreeMap<String, Vec<Vec<ScriptStep>>>) -> BTreeMap<String, ClassFacts> {
-    let named = |node: &Node| {
-        let class = node.class_name.as_str();
-        let class = class.strip_prefix("food_").or_else(|| class.strip_prefix("clothes_")).unwrap_or(class);
-        class.replace('_', " ")
-    };
+fn classes(scene: &Scene, scripts: &BTreeMap<String, Vec<Script>>) -> BTreeMap<String, ClassFacts> {
     let rooms: BTreeMap<u64, &str> = scene
         .nodes
         .iter()
@@ -265,24 +269,26 @@ fn classes(scene: &Scene, scripts: &BTreeMap<String, Vec<Vec<ScriptStep>>>) -> B
     let mut fixed: BTreeSet<String> = BTreeSet::new();
     for node in &scene.nodes {
         if let Some(room) = inside.get(&node.id) {
-            room_of.entry(named(node)).or_insert(room);
+            room_of.entry(class_label(&node.class_name)).or_insert(room);
         }
         if FIXED.contains(&node.category.as_str()) {
-            fixed.insert(named(node));
+            fixed.insert(class_label(&node.class_name));
         }
     }
-    let mut verbs: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for step in scripts.values().flatten().flatten() {
-        verbs.entry(step.class.clone()).or_default().insert(step.verb.clone());
+    let mut verbs: BTreeMap<&str, BTreeSet<Verb>> = BTreeMap::new();
+    for step in scripts.values().flatten().flat_map(|script| &script.steps) {
+        if let Some(class) = &step.class {
+            verbs.entry(class).or_default().insert(step.verb);
+        }
     }
     verbs
         .into_iter()
         .filter(|(class, verbs)| {
-            !fixed.contains(class) && (verbs.contains("GRAB") || verbs.contains("SWITCHON"))
+            !fixed.contains(*class) && (verbs.contains(&Verb::Grab) || verbs.contains(&Verb::SwitchOn))
         })
         .map(|(class, verbs)| {
-            let room = room_of.get(&class).map(|room| (*room).to_owned());
-            (class, ClassFacts { room, verbs })
+            let room = room_of.get(class).map(|room| (*room).to_owned());
+            (class.to_owned(), ClassFacts { room, verbs })
         })
         .collect()
 }

@@ -1,18 +1,16 @@
-//! Days sampled from persona histograms, and what is done with each thing on them.
+//! The days of a household, and what is done with each thing on them.
 
 use std::collections::BTreeMap;
 
 use coin::usage::SESSION_GAP_SECONDS;
-use rand::RngExt;
-use rand::seq::IndexedRandom;
+use rand::seq::{IndexedRandom, SliceRandom};
 use rand_chacha::ChaCha8Rng;
 
-use super::data::{HomerData, SLOTS, ScriptStep};
-use crate::generate::plan::{FIRST_MINUTE, LAST_MINUTE, Minute};
-use crate::generate::sessions::{Action, CAPTIONS_PER_SESSION, Putting, Step};
-
-/// Steps of a script in one minute.
-const STEPS_A_MINUTE: usize = 3;
+use super::data::{HomerData, Persona};
+use super::error::HomerError;
+use super::sampler::{self, COMING_HOME, Habits, LEAVING_HOME};
+use crate::generate::plan::{LAST_MINUTE, Minute};
+use crate::generate::sessions::Step;
 
 /// One session with a thing, before anybody is its user.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,58 +19,66 @@ pub(super) struct Usage {
     pub(super) steps: Vec<Step>,
 }
 
-/// Samples so many days and gives every thing's sessions in order of time.
+/// Samples so many days and gives every class's sessions in order of time.
 ///
-/// There is one persona for each member of the household. On each day and in each hour, every activity of a persona
-/// happens with the probability of its histogram, at a minute drawn evenly; one of its scripts, drawn evenly, says
-/// what is done, three steps a minute. Steps with one thing and no gap over 20 minutes are one session; of more steps
-/// than a camera tells of one session the first ones and the last are kept.
+/// Each member of the household is a persona of their own, while there are any left, and follows one script for each
+/// activity throughout, as in a data set of HOMER's. Steps with one class and no gap over 20 minutes are one session,
+/// whole and in order. What would be seen after 23:00, when the paper's watch ends, is not.
+///
+/// # Errors
+/// If a persona does not come home.
 pub(super) fn sample(
     data: &HomerData,
     members: usize,
     days: usize,
     generator: &mut ChaCha8Rng,
-) -> BTreeMap<String, Vec<Usage>> {
-    let personas: Vec<&BTreeMap<String, Vec<f64>>> =
-        (0..members).filter_map(|_| data.personas.choose(generator)).collect();
+) -> Result<BTreeMap<String, Vec<Usage>>, HomerError> {
+    let mut personas: Vec<&Persona> = data.personas.iter().collect();
+    personas.shuffle(generator);
     let mut events: BTreeMap<&str, Vec<(usize, Step)>> = BTreeMap::new();
-    for day in 0..days {
-        for persona in &personas {
-            for (activity, hours) in *persona {
-                for (slot, &probability) in hours.iter().enumerate().take(SLOTS) {
-                    if !generator.random_bool(probability) {
-                        continue;
-                    }
-                    let start = FIRST_MINUTE + slot as Minute * 60 + generator.random_range(0..60);
-                    let Some(script) = data.scripts.get(activity).and_then(|ways| ways.choose(generator))
-                    else {
-                        continue;
-                    };
-                    for (place, step) in script.iter().enumerate() {
-                        let minute = start + (place / STEPS_A_MINUTE) as Minute;
-                        if let Some(action) = action(step).filter(|_| minute <= LAST_MINUTE)
-                            && let Some((class, _)) = data.classes.get_key_value(&step.class)
-                        {
-                            events.entry(class).or_default().push((day, Step { minute, action }));
-                        }
+    for persona in personas.into_iter().cycle().take(members) {
+        let habits = habits(data, persona, generator);
+        for day in 0..days {
+            let occurrences =
+                sampler::day(persona, &habits, generator).ok_or_else(|| data.never_home(persona))?;
+            for occurrence in occurrences {
+                let Some(script) = habits.get(occurrence.activity) else { continue };
+                for (begins, step) in script.beginnings(occurrence.until - occurrence.from) {
+                    let minute = Minute::try_from((occurrence.from + begins) / 60).unwrap_or(Minute::MAX);
+                    let class = step.class.as_ref().and_then(|class| data.classes.get_key_value(class));
+                    if let (Some(action), Some((class, _)), true) =
+                        (step.verb.action(), class, minute <= LAST_MINUTE)
+                    {
+                        events.entry(class).or_default().push((day, Step { minute, action }));
                     }
                 }
             }
         }
     }
-    events.into_iter().map(|(class, events)| (class.to_owned(), sessions(events))).collect()
+    Ok(events.into_iter().map(|(class, events)| (class.to_owned(), sessions(events))).collect())
 }
 
-/// The steps that handle a thing; walking, sitting and turning to it do not.
-fn action(step: &ScriptStep) -> Option<Action> {
-    match step.verb.as_str() {
-        "FIND" => Some(Action::Search),
-        "GRAB" => Some(Action::Take),
-        "PUTBACK" | "PUTIN" | "PUTOBJBACK" => Some(Action::Place(Putting::Back)),
-        "SWITCHON" | "READ" | "DRINK" | "OPEN" => Some(Action::Use(0)),
-        "SWITCHOFF" | "CLOSE" | "LOOKAT" => Some(Action::Use(1)),
-        _ => None,
+/// Draws one script for each activity of a persona. Who comes home does so by the script of the same name as that by
+/// which they leave, where there is one: it brings back what the other took along.
+pub(super) fn habits<'a>(
+    data: &'a HomerData,
+    persona: &'a Persona,
+    generator: &mut ChaCha8Rng,
+) -> Habits<'a> {
+    let mut habits: Habits<'a> = persona
+        .activities()
+        .filter_map(|activity| Some((activity, data.scripts.get(activity)?.choose(generator)?)))
+        .collect();
+    let leaves_by = habits.get(LEAVING_HOME).map(|script| script.name.as_str());
+    if let Some(back) = data
+        .scripts
+        .get(COMING_HOME)
+        .and_then(|scripts| scripts.iter().find(|script| Some(script.name.as_str()) == leaves_by))
+        && habits.contains_key(COMING_HOME)
+    {
+        habits.insert(COMING_HOME, back);
     }
+    habits
 }
 
 fn sessions(mut events: Vec<(usize, Step)>) -> Vec<Usage> {
@@ -83,17 +89,12 @@ fn sessions(mut events: Vec<(usize, Step)>) -> Vec<Usage> {
         let gap = |last: &Step| i64::from(step.minute - last.minute) * 60 > SESSION_GAP_SECONDS;
         match sessions.last_mut() {
             Some(session) if session.day == day && session.steps.last().is_some_and(|last| !gap(last)) => {
+                // What is done twice in a minute is one line of the history.
                 if !session.steps.contains(&step) {
                     session.steps.push(step);
                 }
             }
             _ => sessions.push(Usage { day, steps: vec![step] }),
-        }
-    }
-    let most = *CAPTIONS_PER_SESSION.end();
-    for session in &mut sessions {
-        if session.steps.len() > most {
-            session.steps.drain(most - 1..session.steps.len() - 1);
         }
     }
     sessions
