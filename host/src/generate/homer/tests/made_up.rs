@@ -45,8 +45,14 @@ pub(super) fn folder() -> TempDir {
     });
     write(&folder, "personaBasedSchedules/optimized_persona.json", &personas.to_string());
 
-    let taken: String =
-        (1..=POTS).map(|pot| format!("[FIND] <pot_{pot}> ({pot})\n[GRAB] <pot_{pot}> ({pot})\n")).collect();
+    // The spoon is taken again and again, so that its session is long and told in many captions.
+    let stir = "[GRAB] <spoon> (60) [1]\n[PUTBACK] <spoon> (60) <table> (900) [2]\n";
+    let taken: String = (1..=POTS)
+        .map(|pot| {
+            let stir = if pot % 4 == 0 { stir } else { "" };
+            format!("[FIND] <pot_{pot}> ({pot})\n[GRAB] <pot_{pot}> ({pot})\n{stir}")
+        })
+        .collect();
     let put: String =
         (1..=POTS).map(|pot| format!("[PUTBACK] <pot_{pot}> ({pot}) <table> (900) [3]\n")).collect();
     // Whoever eats sits for up to an hour, so that what is put back afterwards may be another session.
