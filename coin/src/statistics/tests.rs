@@ -46,7 +46,7 @@ fn mann_whitney_is_that_of_scipy() {
 }
 
 #[test]
-fn holms_correction_is_the_scripts() {
+fn holms_correction_is_that_of_statsmodels() {
     for row in answers("holm") {
         let found = holm(&numbers(&row["p"]));
         let expected = numbers(&row["corrected"]);

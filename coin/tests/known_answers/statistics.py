@@ -1,10 +1,11 @@
-"""Known answers of the tests and intervals, by SciPy and lifelines: python3 statistics.py > statistics.json"""
+"""Known answers of the tests and intervals, by SciPy, statsmodels and lifelines: python3 statistics.py > statistics.json"""
 
 import json
 
 import numpy as np
 from lifelines import KaplanMeierFitter
 from scipy import stats
+from statsmodels.stats.multitest import multipletests
 
 rng = np.random.default_rng(20250113)
 
@@ -26,12 +27,7 @@ BINOMIAL = [[0, 20], [20, 20], [3, 50], [81, 6789], [5400, 6789], [1, 1]]
 
 
 def holm(p_values):
-    order = np.argsort(p_values, kind="stable")
-    corrected, least = [0.0] * len(p_values), 0.0
-    for place, index in enumerate(order):
-        least = max(least, min(1.0, (len(p_values) - place) * p_values[index]))
-        corrected[index] = least
-    return corrected
+    return [float(p) for p in multipletests(p_values, method="holm")[1]] if p_values else []
 
 
 def survival(observations):
