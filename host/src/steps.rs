@@ -15,11 +15,12 @@ use coin_schemas::report::{Cost, Withheld};
 use coin_schemas::tools::{NearbyObjectsResult, SimilarObjectsResult};
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde::de::DeserializeOwned;
-use serde_json::Value;
 use thiserror::Error;
 
 use crate::client::{ServerError, ToolOutcome, ToolServer};
-use crate::model::{ChatModel, ChatRequest, Message, ModelError, ReplyFormat, ToolCall, ToolDefinition};
+use crate::model::{
+    ChatModel, ChatRequest, Message, ModelError, ReplyFormat, ToolArguments, ToolCall, ToolDefinition,
+};
 use crate::prompts;
 
 /// A model that has not come to an answer after so many turns will not.
@@ -274,7 +275,13 @@ impl<'a> Steps<'a> {
                 ToolOutcome { text, is_error: true }
             } else {
                 self.meter.tool_calls.fetch_add(1, Ordering::Relaxed);
-                self.server.call_raw(&call.tool, call.arguments).await?
+                match call.arguments {
+                    ToolArguments::Object(arguments) => self.server.call_raw(&call.tool, arguments).await?,
+                    ToolArguments::Malformed(text) => ToolOutcome {
+                        text: format!("the arguments must be a JSON object, not {}", excerpt(&text)),
+                        is_error: true,
+                    },
+                }
             };
             conversation.take_result(call.id, call.tool, outcome);
         }
@@ -311,7 +318,7 @@ impl Conversation {
 
     /// How often this very call was made, this time included.
     fn count_call(&mut self, call: &ToolCall) -> usize {
-        let key = format!("{} {}", call.tool, Value::Object(call.arguments.clone()));
+        let key = format!("{} {}", call.tool, call.arguments.to_text());
         let count = self.calls.entry(key).or_insert(0);
         *count += 1;
         *count
@@ -352,10 +359,19 @@ fn related_objects(tool: &str, text: &str) -> RelatedObjects {
     }
 }
 
-fn json_format<T: JsonSchema>(name: &'static str) -> ReplyFormat {
+/// As much of a text as an error may quote.
+fn excerpt(text: &str) -> String {
+    const LONGEST: usize = 200;
+    if text.len() <= LONGEST {
+        return format!("{text:?}");
+    }
+    format!("{:?} and {} bytes more", &text[..text.floor_char_boundary(LONGEST)], text.len() - LONGEST)
+}
+
+fn json_format<T: JsonSchema>(name: &str) -> ReplyFormat {
     let mut schema = SchemaGenerator::from(SchemaSettings::draft2020_12()).into_root_schema_for::<T>();
     strip_number_formats(&mut schema);
-    ReplyFormat::Json { name, schema: schema.to_value() }
+    ReplyFormat::Json { name: name.to_owned(), schema: schema.to_value() }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 pub mod calibration;
 pub mod catalogue;
+pub mod chat;
 pub mod episode;
 pub mod events;
 pub mod experiment;

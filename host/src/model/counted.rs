@@ -73,10 +73,7 @@ impl Counted {
     fn reply(&self, text: Option<&str>, tool_calls: &[super::ToolCall]) -> u64 {
         let calls: u64 = tool_calls
             .iter()
-            .map(|call| {
-                let arguments = serde_json::Value::Object(call.arguments.clone()).to_string();
-                self.count(&call.tool) + self.count(&arguments)
-            })
+            .map(|call| self.count(&call.tool) + self.count(&call.arguments.to_text()))
             .sum();
         calls + text.map_or(0, |text| self.count(text))
     }
@@ -124,7 +121,7 @@ mod tests {
         }
 
         async fn complete(&self, _request: &ChatRequest<'_>) -> Result<ChatReply, ModelError> {
-            Ok(ChatReply { text: Some("hello world".to_owned()), tool_calls: Vec::new(), usage: self.0 })
+            Ok(ChatReply { usage: self.0, ..ChatReply::words("hello world") })
         }
     }
 

@@ -16,7 +16,7 @@ use jiff::civil::DateTime;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 
-use super::{ChatModel, ChatReply, ChatRequest, Message, ModelError, TokenUsage, ToolCall};
+use super::{ChatModel, ChatReply, ChatRequest, Message, ModelError, ToolArguments, ToolCall};
 
 /// The tools that the evidence model reads.
 const USAGE: &str = "get_usage_summary";
@@ -49,11 +49,11 @@ impl EmbeddedModel {
             .map(|tool| ToolCall {
                 id: format!("{tool}-{}", object.id),
                 tool: tool.to_owned(),
-                arguments: arguments(tool, object, as_of),
+                arguments: ToolArguments::Object(arguments(tool, object, as_of)),
             })
             .collect();
         if !wanted.is_empty() {
-            return Ok(ChatReply { text: None, tool_calls: wanted, usage: TokenUsage::default() });
+            return Ok(ChatReply::calls(wanted));
         }
 
         let sessions = sessions(roster, result::<UsageSummary>(request, USAGE)?)?;
@@ -98,7 +98,7 @@ impl ChatModel for EmbeddedModel {
             Task::AskQuestion { household, object, scores, times_asked } => {
                 let roster = roster(&household)?;
                 let scores = roster.score_vector(&scores).map_err(malformed)?;
-                Ok(words(word_question(&QuestionContext {
+                Ok(ChatReply::words(word_question(&QuestionContext {
                     roster: &roster,
                     class: object.class.as_str(),
                     room: object.room.as_deref(),
@@ -137,12 +137,8 @@ fn malformed(reason: impl std::fmt::Display) -> ModelError {
     ModelError::Conversation { reason: format!("{reason}") }
 }
 
-fn words(text: String) -> ChatReply {
-    ChatReply { text: Some(text), tool_calls: Vec::new(), usage: TokenUsage::default() }
-}
-
 fn say(reply: &impl serde::Serialize) -> Result<ChatReply, ModelError> {
-    Ok(words(serde_json::to_string(reply).map_err(malformed)?))
+    Ok(ChatReply::words(serde_json::to_string(reply).map_err(malformed)?))
 }
 
 /// The task is the last thing that the user side said.

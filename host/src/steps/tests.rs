@@ -11,7 +11,7 @@ use super::*;
 use crate::client::ServerAddress;
 use crate::home::Home;
 use crate::model::embedded::EmbeddedModel;
-use crate::model::{ChatReply, TokenUsage};
+use crate::model::{ChatReply, TokenUsage, ToolArguments};
 
 const SCORES: &str = r#"{"ownership_distribution": {"Bob": 0.9, "Mary": 0.2, "Tom": 0.1}}"#;
 
@@ -49,13 +49,13 @@ impl ChatModel for Scripted {
 
 fn says(text: &str) -> ChatReply {
     let usage = TokenUsage { prompt_tokens: 7, completion_tokens: 3 };
-    ChatReply { text: Some(text.to_owned()), tool_calls: Vec::new(), usage }
+    ChatReply { usage, ..ChatReply::words(text) }
 }
 
 fn calls(tool: &str, arguments: serde_json::Value) -> ChatReply {
     let serde_json::Value::Object(arguments) = arguments else { panic!("arguments are an object") };
-    let call = ToolCall { id: "call-1".to_owned(), tool: tool.to_owned(), arguments };
-    ChatReply { text: None, tool_calls: vec![call], usage: TokenUsage::default() }
+    let arguments = ToolArguments::Object(arguments);
+    ChatReply::calls(vec![ToolCall { id: "call-1".to_owned(), tool: tool.to_owned(), arguments }])
 }
 
 async fn home() -> Home {
