@@ -121,7 +121,7 @@ mod prior {
     #[case(9, &[0.60, 0.05, 0.05, 0.05, 0.0, 0.0, 0.0, 0.0, 0.25])]
     #[case(12, &[0.60, 0.05, 0.05, 0.05, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.25])]
     fn goes_by_the_number_of_owners(#[case] members: usize, #[case] by_size: &[f64]) {
-        let prior = posterior(&vec![0; members], None, &[], &defaults());
+        let prior = posterior(&vec![0; members], Opinion::None, &[], &defaults());
         for (size, &expected) in (1..=members).zip(by_size) {
             let of_size: Vec<f64> =
                 prior.entries().iter().filter(|(set, _)| set.len() == size).map(|entry| entry.1).collect();
@@ -137,7 +137,7 @@ mod usage {
     proptest! {
         #[test]
         fn the_posterior_is_a_distribution((sessions, relatives) in any_evidence()) {
-            let posterior = posterior(&sessions, None, &relatives, &defaults());
+            let posterior = posterior(&sessions, Opinion::None, &relatives, &defaults());
             let sum: f64 = posterior.entries().iter().map(|entry| entry.1).sum();
             prop_assert!((sum - 1.0).abs() < EXACT);
             prop_assert!(posterior.entries().iter().all(|entry| (0.0..=1.0).contains(&entry.1)));
@@ -156,8 +156,8 @@ mod usage {
                 .iter()
                 .map(|relative| KnownRelative { owners: moved(relative.owners, &order), ..*relative })
                 .collect();
-            let before = posterior(&sessions, None, &relatives, &defaults());
-            let after = posterior(&permute(&sessions, &order), None, &permuted_relatives, &defaults());
+            let before = posterior(&sessions, Opinion::None, &relatives, &defaults());
+            let after = posterior(&permute(&sessions, &order), Opinion::None, &permuted_relatives, &defaults());
             for &(owners, probability) in before.entries() {
                 prop_assert!((probability - after.probability(moved(owners, &order))).abs() < 1e-10);
             }
@@ -165,7 +165,7 @@ mod usage {
     }
 
     fn score_of_first(sessions: &[u64], relatives: &[KnownRelative], parameters: &EvidenceParameters) -> f64 {
-        posterior(sessions, None, relatives, parameters).marginals(sessions.len())[0].value()
+        posterior(sessions, Opinion::None, relatives, parameters).marginals(sessions.len())[0].value()
     }
 
     fn score_after_one_more(sessions: &[u64], parameters: &EvidenceParameters) -> (f64, f64) {
@@ -205,13 +205,13 @@ mod usage {
     #[case::two_alike(&[20, 19, 0], &[0, 1])]
     #[case::everyone_alike(&[12, 10, 11], &[0, 1, 2])]
     fn the_best_set_is_the_plain_reading(#[case] sessions: &[u64], #[case] owners: &[usize]) {
-        assert_eq!(posterior(sessions, None, &[], &defaults()).best().0, set(owners));
+        assert_eq!(posterior(sessions, Opinion::None, &[], &defaults()).best().0, set(owners));
     }
 
     #[test]
     fn a_year_of_use_by_the_largest_home_stays_finite() {
         let sessions: Vec<u64> = (0..20).map(|place| 5000 / (place + 1)).collect();
-        let posterior = posterior(&sessions, None, &[near(&[0], 1.0)], &defaults());
+        let posterior = posterior(&sessions, Opinion::None, &[near(&[0], 1.0)], &defaults());
         assert!(posterior.entries().iter().all(|entry| entry.1.is_finite()));
     }
 }
@@ -223,7 +223,7 @@ mod relatives {
         #[test]
         fn switched_off_they_change_nothing((sessions, relatives) in any_evidence()) {
             let off = EvidenceParameters { place: 0.0, looks: 0.0, ..defaults() };
-            assert_same(&posterior(&sessions, None, &relatives, &off), &posterior(&sessions, None, &[], &off), 0.0);
+            assert_same(&posterior(&sessions, Opinion::None, &relatives, &off), &posterior(&sessions, Opinion::None, &[], &off), 0.0);
         }
 
         #[test]
@@ -232,11 +232,11 @@ mod relatives {
             strength in 0.01..=1.0_f64,
         ) {
             prop_assume!(!owners.is_empty());
-            let alone = posterior(&sessions, None, &[], &defaults()).probability(owners);
+            let alone = posterior(&sessions, Opinion::None, &[], &defaults()).probability(owners);
             for relation in [Relation::Near { weight: strength }, Relation::LooksAlike { similarity: strength }] {
-                let pulled = posterior(&sessions, None, &[KnownRelative { owners, relation }], &defaults());
+                let pulled = posterior(&sessions, Opinion::None, &[KnownRelative { owners, relation }], &defaults());
                 prop_assert!(pulled.probability(owners) >= alone);
-                let stronger = posterior(&sessions, None, &[KnownRelative { owners, relation }; 2], &defaults());
+                let stronger = posterior(&sessions, Opinion::None, &[KnownRelative { owners, relation }; 2], &defaults());
                 prop_assert!(stronger.probability(owners) >= pulled.probability(owners) - EXACT);
             }
         }
@@ -245,15 +245,15 @@ mod relatives {
         /// ∏(1 − ρ) of its prior, and no other's prior grows beyond 1.
         #[test]
         fn they_make_nothing_certain((sessions, relatives) in any_evidence()) {
-            let alone = posterior(&sessions, None, &[], &defaults());
-            let pulled = posterior(&sessions, None, &relatives, &defaults());
+            let alone = posterior(&sessions, Opinion::None, &[], &defaults());
+            let pulled = posterior(&sessions, Opinion::None, &relatives, &defaults());
             let strongest = defaults().place.max(defaults().looks);
             let independent = (1.0 - strongest).powi(relatives.len() as i32);
             let most_growth = independent + (1.0 - independent) / least_prior(sessions.len());
             for &(owners, probability) in alone.entries() {
                 prop_assert!(pulled.probability(owners) >= 0.999_999 * probability * independent / most_growth);
             }
-            let without_usage = posterior(&vec![0; sessions.len()], None, &relatives, &defaults());
+            let without_usage = posterior(&vec![0; sessions.len()], Opinion::None, &relatives, &defaults());
             prop_assert!(without_usage.entries().iter().all(|entry| entry.1 > 0.0));
         }
 
@@ -262,13 +262,13 @@ mod relatives {
             sessions in any_sessions(1..=5), weight in 0.0..=1.0_f64, unlike in -1.0..=0.0_f64,
         ) {
             let silent = [near(&[], weight), looks_alike(&[], weight), looks_alike(&[0], unlike), near(&[0], 0.0)];
-            assert_same(&posterior(&sessions, None, &silent, &defaults()), &posterior(&sessions, None, &[], &defaults()), EXACT);
+            assert_same(&posterior(&sessions, Opinion::None, &silent, &defaults()), &posterior(&sessions, Opinion::None, &[], &defaults()), EXACT);
         }
     }
 
     /// The smallest π(S) of a household.
     fn least_prior(members: usize) -> f64 {
-        posterior(&vec![0; members], None, &[], &defaults())
+        posterior(&vec![0; members], Opinion::None, &[], &defaults())
             .entries()
             .iter()
             .map(|entry| entry.1)
@@ -278,7 +278,8 @@ mod relatives {
     /// The prior as a mixture, by hand: ρ₁ = .05 · .8, ρ₂ = .5 · .5, on two members without sessions.
     #[test]
     fn the_prior_is_a_mixture_of_relatives_and_pi() {
-        let pulled = posterior(&[0, 0], None, &[near(&[0], 0.8), looks_alike(&[0, 1], 0.5)], &defaults());
+        let pulled =
+            posterior(&[0, 0], Opinion::None, &[near(&[0], 0.8), looks_alike(&[0, 1], 0.5)], &defaults());
         let unrelated = (1.0 - 0.04) * (1.0 - 0.25);
         let (single, everyone) = (0.3 / 0.85, 0.25 / 0.85);
         let expected = [
@@ -294,7 +295,7 @@ mod relatives {
     /// Twenty neighbours of Ann's do not outvote twenty sessions of Bob.
     #[test]
     fn a_crowd_does_not_outvote_usage() {
-        let posterior = posterior(&[0, 20, 0], None, &[near(&[0], 1.0); 20], &defaults());
+        let posterior = posterior(&[0, 20, 0], Opinion::None, &[near(&[0], 1.0); 20], &defaults());
         assert_eq!(posterior.best().0, OwnerSet::single(user(1)));
     }
 
@@ -303,7 +304,104 @@ mod relatives {
     fn one_whose_owners_are_no_candidate_says_nothing() {
         let sessions = [1, 0, 0, 0, 0, 0, 0, 0, 2];
         let certain = EvidenceParameters { place: 1.0, ..defaults() };
-        let silent = posterior(&sessions, None, &[near(&[0, 1, 2, 3, 4], 1.0)], &certain);
-        assert_same(&silent, &posterior(&sessions, None, &[], &certain), 0.0);
+        let silent = posterior(&sessions, Opinion::None, &[near(&[0, 1, 2, 3, 4], 1.0)], &certain);
+        assert_same(&silent, &posterior(&sessions, Opinion::None, &[], &certain), 0.0);
+    }
+}
+
+mod opinion_of_a_model {
+    use coin_schemas::household::Score;
+
+    use super::*;
+    use crate::common_sense::expect;
+
+    fn scores(values: &[f64]) -> Vec<Score> {
+        values.iter().map(|&value| Score::new(value).unwrap()).collect()
+    }
+
+    fn with(sessions: &[u64], values: &[f64]) -> OwnerSetDistribution {
+        posterior(sessions, Opinion::OfModel(&scores(values)), &[], &defaults())
+    }
+
+    fn any_opinion() -> impl Strategy<Value = (Vec<u64>, Vec<f64>)> {
+        (2..=5_usize).prop_flat_map(|members| {
+            (any_sessions(members..=members), proptest::collection::vec(0.0..=1.0_f64, members))
+        })
+    }
+
+    /// By fractions, for three members without a session: π is 1/5 for each alone, 1/20 for each pair and 1/4 for all,
+    /// so b = 1/5 + 2/20 + 1/4 = 11/20. Scores .9, .3, .1 make e({0}) = 1/5 · (18/11) · (14/9) · 2 / Σ and so on; the
+    /// mixture 3/4·π + 1/4·e was evaluated with Python's `fractions`.
+    #[test]
+    fn is_mixed_into_the_prior_as_odds_against_its_base() {
+        let found = with(&[0, 0, 0], &[0.9, 0.3, 0.1]);
+        let expected = [
+            (vec![0], 236937.0 / 664820.0),
+            (vec![1], 106257.0 / 664820.0),
+            (vec![0, 1], 147837.0 / 2659280.0),
+            (vec![0, 1, 2], 104097.0 / 531856.0),
+        ];
+        for (members, probability) in expected {
+            let found = found.probability(set(&members));
+            assert!((found - probability).abs() < EXACT, "{members:?}: {found} and {probability}");
+        }
+    }
+
+    #[rstest]
+    #[case::of_the_base(&[0.55, 0.55, 0.55])]
+    #[case::that_nobody_is_an_owner(&[0.0, 0.0, 0.0])]
+    #[case::of_too_few_members(&[0.9, 0.1])]
+    fn says_nothing(#[case] values: &[f64]) {
+        assert_same(&with(&[3, 1, 0], values), &posterior(&[3, 1, 0], Opinion::None, &[], &defaults()), 1e-9);
+    }
+
+    #[test]
+    fn outweighs_a_class_of_the_file_that_is_not_consulted_then() {
+        let home = [("Bob", "father"), ("Mary", "mother"), ("Tom", "student")];
+        let users = home.map(|(name, role)| {
+            let background =
+                coin_schemas::household::Background { role: Some(role.to_owned()), occupation: None };
+            (coin_schemas::household::UserName::new(name).unwrap(), background)
+        });
+        let roster = crate::roster::Roster::new(&users.into_iter().collect()).unwrap();
+        let expectation = expect("textbook", &roster).unwrap();
+        let file = posterior(&[0; 3], Opinion::OfClass(&expectation), &[], &defaults());
+        assert_eq!(file.best().0, set(&[2]));
+        assert_eq!(with(&[0; 3], &[0.9, 0.05, 0.05]).best().0, set(&[0]));
+    }
+
+    proptest! {
+        /// No opinion, however sure, excludes a set or takes more than (1 − w) of its prior odds.
+        #[test]
+        fn is_bounded((sessions, values) in any_opinion()) {
+            let without = posterior(&sessions, Opinion::None, &[], &defaults());
+            let with = with(&sessions, &values);
+            let weight = defaults().language_model;
+            for &(set, probability) in without.entries() {
+                let least = (1.0 - weight) * probability
+                    / ((1.0 - weight) + weight / smallest_prior(sessions.len()));
+                prop_assert!(with.probability(set) >= least * (1.0 - 1e-9), "{:?}", places(set));
+            }
+        }
+
+        /// A higher score makes nobody a less likely owner.
+        #[test]
+        fn is_monotone((sessions, values) in any_opinion(), raised in 0.0..=1.0_f64) {
+            let mut higher = values.clone();
+            higher[0] += (1.0 - higher[0]) * raised;
+            prop_assume!(values.iter().any(|&value| value > 1e-6));
+            let before = with(&sessions, &values).marginals(values.len())[0].value();
+            let after = with(&sessions, &higher).marginals(values.len())[0].value();
+            prop_assert!(after >= before - 1e-9, "{before} and {after}");
+        }
+    }
+
+    /// The least prior probability of an owner set, which bounds how much the mixture can favour one.
+    fn smallest_prior(members: usize) -> f64 {
+        posterior(&vec![0; members], Opinion::None, &[], &defaults())
+            .entries()
+            .iter()
+            .map(|&(_, probability)| probability)
+            .fold(1.0, f64::min)
     }
 }

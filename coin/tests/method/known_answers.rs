@@ -4,7 +4,7 @@
 use coin::calibration::{CalibrationSample, Levels, calibrate};
 use coin::conformal::risk::{Outcome, RiskSample, risk_threshold};
 use coin::conformal::{Quantile, split};
-use coin::evidence::{EvidenceParameters, KnownRelative, Relation, log_likelihood, posterior};
+use coin::evidence::{EvidenceParameters, KnownRelative, Opinion, Relation, log_likelihood, posterior};
 use coin::metrics::{Judged, summarise};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin_schemas::calibration::NonconformityScore;
@@ -57,7 +57,7 @@ fn posteriors_are_those_of_numerical_integration() {
                 KnownRelative { owners: owners(&relative["owners"]), relation }
             })
             .collect();
-        let found = posterior(&sessions, None, &relatives, &EvidenceParameters::default());
+        let found = posterior(&sessions, Opinion::None, &relatives, &EvidenceParameters::default());
         let expected = row["posterior"].as_array().unwrap();
         assert_eq!(found.entries().len(), expected.len());
         for entry in expected {

@@ -75,7 +75,7 @@ impl EmbeddedModel {
             }
         }
         let expectation = expect(object.class.as_str(), roster);
-        let distribution = posterior(&sessions, expectation.as_ref(), &relatives, &self.parameters);
+        let distribution = posterior(&sessions, expectation.as_ref().into(), &relatives, &self.parameters);
         let reply = OwnershipReply {
             ownership_distribution: roster.scores(&distribution.marginals(roster.len())),
             owner_sets: Some(distribution.to_named(roster)),

@@ -103,7 +103,7 @@ async fn the_embedded_model_fetches_its_evidence_by_tool_calls() {
     let expectation = coin::common_sense::expect("marker", &home().await.roster);
     assert!(expectation.is_some());
     let parameters = coin::evidence::EvidenceParameters::default();
-    let expected = coin::evidence::posterior(&[3, 1, 1], expectation.as_ref(), &[], &parameters);
+    let expected = coin::evidence::posterior(&[3, 1, 1], expectation.as_ref().into(), &[], &parameters);
     let ((owners, confidence), (expected_owners, expected_confidence)) =
         (inference.distribution.best(), expected.best());
     assert_eq!(owners, expected_owners);
