@@ -135,8 +135,8 @@ pub enum DistributionError {
     Roster(#[from] RosterError),
 }
 
-/// Probabilities of owner sets; they sum to 1.
-#[derive(Debug, Clone, PartialEq)]
+/// Probabilities of owner sets; they sum to 1. The default, without a set, is of a household without members.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct OwnerSetDistribution {
     entries: Vec<(OwnerSet, f64)>,
 }
@@ -187,6 +187,16 @@ impl OwnerSetDistribution {
     /// Takes probabilities by name, as a model hands them over. Sets that are left out have probability 0; they
     /// stay candidates, because a prediction set that may exclude nothing must hold them too.
     pub fn from_named(roster: &Roster, sets: &[OwnerSetProbability]) -> Result<Self, DistributionError> {
+        let mut distribution = Self::restored(roster, sets)?;
+        let sum = sets.iter().fold(0.0, |sum, set| sum + set.probability);
+        for (_, probability) in &mut distribution.entries {
+            *probability /= sum;
+        }
+        Ok(distribution)
+    }
+
+    /// Takes back what [`Self::to_named`] gave, to the last bit: the probabilities are not made to sum to 1 once more.
+    pub fn restored(roster: &Roster, sets: &[OwnerSetProbability]) -> Result<Self, DistributionError> {
         let mut entries: Vec<(OwnerSet, f64)> = Vec::with_capacity(sets.len());
         let mut named: HashSet<OwnerSet> = HashSet::with_capacity(sets.len());
         for OwnerSetProbability { owners, probability } in sets {
@@ -204,9 +214,6 @@ impl OwnerSetDistribution {
         let sum = entries.iter().fold(0.0, |sum, &(_, probability)| sum + probability);
         if (sum - 1.0).abs() > SUM_TOLERANCE {
             return Err(DistributionError::Sum { sum });
-        }
-        for (_, probability) in &mut entries {
-            *probability /= sum;
         }
         let left_out = candidate_sets(roster.len()).into_iter().filter(|set| !named.contains(set));
         entries.extend(left_out.map(|set| (set, 0.0)));

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use coin::agent::{AgentSettings, Reinference};
-use coin::calibration::{CalibrationError, CalibrationSample, Levels, Provenance, Thresholds, calibrate};
+use coin::calibration::{
+    CalibrationError, CalibrationSample, EMBEDDED_MODEL, Levels, Provenance, Thresholds, calibrate,
+};
 use coin::sharing::ShareThresholds;
 use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
 use coin_schemas::episode::Truth;
-use coin_schemas::report::{Gate, Withheld};
+use coin_schemas::report::{ContextSource, Estimator, Gate, Scoring, Withheld};
 use coin_server::episode::LoadedEpisode;
 use thiserror::Error;
 
@@ -20,7 +22,7 @@ use crate::model::ChatModel;
 use crate::parallel;
 use crate::person::{Person, PersonError, PersonKind, PutQuestion, Response};
 use crate::report::true_owners;
-use crate::run::{RunError, drive};
+use crate::run::{Course, RunError, drive};
 
 /// Why a calibration file is refused.
 #[derive(Debug, Error)]
@@ -78,6 +80,20 @@ pub enum CalibrationFileError {
         /// What is withheld now.
         run: BTreeSet<Withheld>,
     },
+    /// It was made from scores of another kind.
+    #[error(
+        "the calibration was made with {} and the run scores with {}, which mean something else; make one with \
+         `host calibrate` and the same --estimator, --context and --batch, or use it all the same with \
+         --force-calibration",
+        in_words(calibration),
+        in_words(run)
+    )]
+    ScoredOtherwise {
+        /// How the scores were made then.
+        calibration: Scoring,
+        /// How they are made now.
+        run: Scoring,
+    },
     /// It was written by a later program.
     #[error(
         "{} has version {given} of the form, and this program reads version {CALIBRATION_VERSION}; \
@@ -101,6 +117,28 @@ fn told(withheld: &BTreeSet<Withheld>) -> &'static str {
         (true, false) => "the people's background withheld",
         (false, true) => "usage withheld",
         (true, true) => "background and usage withheld",
+    }
+}
+
+fn in_words(scoring: &Scoring) -> String {
+    let estimator = match scoring.estimator {
+        Estimator::Model => "model",
+        Estimator::Evidence => "evidence",
+        Estimator::Fused => "fused",
+    };
+    let context = match scoring.context {
+        ContextSource::Tools => "tools",
+        ContextSource::Given => "given",
+    };
+    format!("--estimator {estimator} --context {context} --batch {}", scoring.batch)
+}
+
+/// Whose scores a run makes, as thresholds have it: those of the evidence model are the embedded model's, whatever
+/// language model words the questions.
+pub fn scored_by(model: &str, scoring: Scoring) -> (&str, Scoring) {
+    match scoring.estimator {
+        Estimator::Evidence => (EMBEDDED_MODEL, Scoring::default()),
+        Estimator::Model | Estimator::Fused => (model, scoring),
     }
 }
 
@@ -193,6 +231,23 @@ pub struct CalibrateSettings {
     pub history: History,
     /// What the model is not told.
     pub withheld: BTreeSet<Withheld>,
+    /// How the scores are made.
+    pub scoring: Scoring,
+    /// How many conversations go on at once in each home.
+    pub concurrency: usize,
+}
+
+/// How homes are scored.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HomeScoring {
+    /// Which part of their history the model sees.
+    pub history: History,
+    /// What it is not told.
+    pub withheld: BTreeSet<Withheld>,
+    /// How the scores are made.
+    pub scoring: Scoring,
+    /// How many conversations go on at once in each home.
+    pub concurrency: usize,
 }
 
 /// A home whose every thing the model has scored once, without a question.
@@ -211,14 +266,22 @@ pub async fn calibrate_on(
     model: &Arc<dyn ChatModel>,
     scored: impl FnMut(),
 ) -> Result<Calibration, CalibrateError> {
-    let homes = score_homes(&settings.episodes, settings.history, &settings.withheld, model, scored).await?;
+    let scoring = HomeScoring {
+        history: settings.history,
+        withheld: settings.withheld.clone(),
+        scoring: settings.scoring,
+        concurrency: settings.concurrency,
+    };
+    let homes = score_homes(&settings.episodes, &scoring, model, scored).await?;
     let samples: Vec<CalibrationSample> =
         homes.iter().flat_map(|home| home.samples.iter().cloned()).collect();
+    let (scored_by, scoring) = scored_by(model.name(), settings.scoring);
     let provenance = Provenance {
-        model: model.name().to_owned(),
+        model: scored_by.to_owned(),
         episodes: homes.into_iter().map(|home| home.name).collect(),
         history: settings.history,
         withheld: settings.withheld.clone(),
+        scoring,
     };
     Ok(calibrate(provenance, &samples, settings.levels, settings.score)?)
 }
@@ -226,8 +289,7 @@ pub async fn calibrate_on(
 /// Lets the model score every thing of every home, in the order given.
 pub async fn score_homes(
     episodes: &[PathBuf],
-    history: History,
-    withheld: &BTreeSet<Withheld>,
+    how: &HomeScoring,
     model: &Arc<dyn ChatModel>,
     scored: impl FnMut(),
 ) -> Result<Vec<ScoredHome>, CalibrateError> {
@@ -238,16 +300,15 @@ pub async fn score_homes(
         }
     }
     let jobs = episodes.iter().cloned().map(|episode| {
-        let (model, withheld) = (Arc::clone(model), withheld.clone());
-        async move { score_home(&episode, history, &withheld, model.as_ref()).await }
+        let (model, how) = (Arc::clone(model), how.clone());
+        async move { score_home(&episode, &how, model.as_ref()).await }
     });
     parallel::in_order(jobs, scored).await
 }
 
 async fn score_home(
     folder: &Path,
-    history: History,
-    withheld: &BTreeSet<Withheld>,
+    how: &HomeScoring,
     model: &dyn ChatModel,
 ) -> Result<ScoredHome, CalibrateError> {
     let refused =
@@ -256,20 +317,20 @@ async fn score_home(
     let truth = coin_server::episode::load_truth(folder, &loaded.episode)
         .map_err(|error| refused(error.into()))?
         .ok_or_else(|| refused(RunError::NoTruth { episode: loaded.episode.name.clone() }))?;
-    if history == History::TrainingDays {
+    if how.history == History::TrainingDays {
         let until = loaded
             .episode
             .train_until
             .ok_or_else(|| CalibrateError::NoTrainingDays { episode: folder.to_owned() })?;
         loaded = loaded.as_it_stood(until);
     }
-    score_loaded(loaded, &truth, withheld, model).await.map_err(refused)
+    score_loaded(loaded, &truth, how, model).await.map_err(refused)
 }
 
 async fn score_loaded(
     loaded: LoadedEpisode,
     truth: &Truth,
-    withheld: &BTreeSet<Withheld>,
+    how: &HomeScoring,
     model: &dyn ChatModel,
 ) -> Result<ScoredHome, RunError> {
     let home = Home::open(loaded, None, &ServerAddress::InProcess).await?;
@@ -281,7 +342,8 @@ async fn score_loaded(
         max_questions: 0,
         reinference: Reinference::AnsweredContext,
     };
-    let (outcome, _) = drive(&home, agent_settings, withheld, model, &mut Nobody, &mut Unobserved).await?;
+    let course = Course::new(agent_settings, how.withheld.clone(), how.scoring, how.concurrency);
+    let (outcome, _) = drive(&home, course, model, &mut Nobody, &mut Unobserved).await?;
     let samples = owners
         .into_iter()
         .filter_map(|(object, owners)| {

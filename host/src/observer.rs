@@ -61,9 +61,9 @@ impl Chronicle {
                 let before = self.beliefs.insert(object_id.clone(), (owners.clone(), *confidence));
                 self.note_change(object_id, before, owners);
             }
-            LogEvent::InferenceFailed { object_id, reason } => {
+            LogEvent::ModelFaltered { object_id, reason } => {
                 if let Some(class) = self.classes.get(object_id) {
-                    self.narration.inference_failed(object_id, class, reason);
+                    self.narration.model_faltered(object_id, class, reason);
                 }
             }
             LogEvent::QuestionAsked { step, question, .. } => {
@@ -86,6 +86,10 @@ impl Chronicle {
                 });
             }
             LogEvent::QuestionDeclined { .. } => self.narration.declined(),
+            LogEvent::AnswerUndone { step, .. } => {
+                self.untold = None;
+                self.narration.answer_undone(*step);
+            }
             LogEvent::NobodyLeft { .. } => self.narration.nobody_left(),
             LogEvent::RunFinished { .. } => self.end_of_pass(),
         }

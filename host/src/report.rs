@@ -15,6 +15,7 @@ use coin_schemas::report::{
 };
 
 use crate::driver::{Outcome, Standing};
+use crate::journal::named_parts;
 
 /// What a report says beside the outcome.
 #[derive(Debug)]
@@ -90,6 +91,10 @@ fn object_report(
         uncertainty: belief.uncertainty,
         confidence: belief.confidence,
         shared: belief.shared,
+        parts: match belief.source {
+            Source::Answer => None,
+            Source::Inferred => state.parts().map(|parts| named_parts(parts, roster)),
+        },
         problem: state.problem().map(str::to_owned),
         truth,
     }

@@ -7,23 +7,28 @@ use std::time::Instant;
 use coin::agent::{Agent, AgentSettings, Reinference};
 use coin::calibration::{EMBEDDED_MODEL, Thresholds, embedded_calibration, score_of};
 use coin::dialogue::Reading;
+use coin::owners::OwnerSet;
 use coin::roster::RosterError;
 use coin::sharing::ShareThresholds;
 use coin::space::Neighbourhood;
 use coin_schemas::calibration::Calibration;
 use coin_schemas::episode::{Episode, Truth};
 use coin_schemas::events::LogEvent;
-use coin_schemas::household::ObjectId;
-use coin_schemas::report::{Gate, Parameters, Report, Withheld};
+use coin_schemas::household::{ObjectId, Owners};
+use coin_schemas::journal::{JOURNAL_VERSION, JournalHeading};
+use coin_schemas::report::{Estimator, Gate, Parameters, Report, Scoring, Withheld};
 use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS};
 use coin_server::episode::{EpisodeError, LoadedEpisode};
 use thiserror::Error;
+use tokio_util::sync::CancellationToken;
 
-use crate::calibrate::CalibrationFileError;
+use crate::calibrate::{CalibrationFileError, scored_by};
 use crate::client::{ServerAddress, ServerError};
 use crate::driver::{DriveError, Driver, Observer, Outcome, Standing};
+use crate::estimation::Estimation;
 use crate::evidence::{self, Evidence};
 use crate::home::{self, Home, HomeError};
+use crate::journal::{Beginning, Journal, JournalError};
 use crate::model::ChatModel;
 use crate::pages::episode::Belief;
 use crate::person::{
@@ -32,8 +37,8 @@ use crate::person::{
 use crate::report::{self, Circumstances};
 use crate::steps::Steps;
 
-/// How many things are inferred at once.
-const CONCURRENCY: usize = 4;
+/// How many conversations go on at once where nobody says otherwise.
+pub const CONCURRENCY: usize = 4;
 
 /// Who answers the questions.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -83,8 +88,21 @@ pub struct RunSettings {
     pub withheld: BTreeSet<Withheld>,
     /// What to do with the calibration of another model.
     pub foreign_calibration: ForeignCalibration,
+    /// How the scores are made; `None` takes what suits the model.
+    pub scoring: Option<Scoring>,
+    /// How many conversations go on at once.
+    pub concurrency: usize,
+    /// Whether an earlier run with the same database goes on.
+    pub beginning: Beginning,
     /// Whether the evidence about every thing is fetched in the end.
     pub evidence: EvidenceKept,
+}
+
+/// How scores are made where nobody says otherwise: a language model's are fused with the evidence, and the embedded
+/// model is the evidence model itself.
+pub fn default_scoring(model: &str) -> Scoring {
+    let estimator = if model == EMBEDDED_MODEL { Estimator::Model } else { Estimator::Fused };
+    Scoring { estimator, ..Scoring::default() }
 }
 
 /// Whether a run keeps what a page shows of each thing.
@@ -137,6 +155,9 @@ pub enum RunError {
     /// The server failed.
     #[error(transparent)]
     Server(#[from] ServerError),
+    /// The journal of the run is refused.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// The run failed.
     #[error(transparent)]
     Drive(#[from] DriveError),
@@ -149,12 +170,17 @@ impl RunError {
     /// Whether what was given is at fault, so that the same call will fail again.
     pub fn is_refusal(&self) -> bool {
         match self {
-            Self::Home(HomeError::Server(_)) | Self::Server(_) | Self::Drive(_) | Self::Person(_) => false,
+            Self::Home(HomeError::Server(_))
+            | Self::Server(_)
+            | Self::Drive(_)
+            | Self::Person(_)
+            | Self::Journal(JournalError::File { .. } | JournalError::Locked { .. }) => false,
             Self::Home(_)
             | Self::Truth(_)
             | Self::NoTruth { .. }
             | Self::Calibration(_)
             | Self::Script(_)
+            | Self::Journal(_)
             | Self::Roster(_) => true,
         }
     }
@@ -178,10 +204,12 @@ pub async fn run_episode(
     settings: &RunSettings,
     model: &dyn ChatModel,
     observer: &mut dyn Observer,
+    stop: CancellationToken,
 ) -> Result<RunResult, RunError> {
     let started = Instant::now();
     // Everything that was given is checked before the first of it is imported.
-    let calibration = calibration_for(settings, model.name())?;
+    let scoring = settings.scoring.unwrap_or_else(|| default_scoring(model.name()));
+    let calibration = calibration_for(settings, model.name(), scoring)?;
     let loaded = home::load(&settings.episode).await?;
     let truth = coin_server::episode::load_truth(&settings.episode, &loaded.episode)?;
     let mut person = person(settings, &loaded, truth.as_ref())?;
@@ -193,7 +221,15 @@ pub async fn run_episode(
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
         reinference: settings.reinference,
     };
-    let parameters = parameters(&agent_settings, person.kind(), &settings.withheld);
+    let parameters = parameters(&agent_settings, person.kind(), &settings.withheld, scoring);
+    let mut course =
+        Course::new(agent_settings, settings.withheld.clone(), scoring, settings.concurrency).until(stop);
+    if let Some(db) = &settings.db {
+        let mut heading =
+            heading(settings, &home, model.name(), scoring, calibration.as_ref(), person.kind());
+        let journal = Journal::open(db, settings.beginning, &mut heading, &home.roster)?;
+        course = course.going_on(journal, &heading);
+    }
 
     observer
         .observe(&LogEvent::RunStarted {
@@ -205,8 +241,7 @@ pub async fn run_episode(
             objects: home.things.iter().map(|(id, thing)| (id.clone(), thing.class.clone())).collect(),
         })
         .map_err(DriveError::from)?;
-    let (outcome, mut cost) =
-        drive(&home, agent_settings, &settings.withheld, model, person.as_mut(), observer).await?;
+    let (outcome, mut cost) = drive(&home, course, model, person.as_mut(), observer).await?;
     cost.seconds = started.elapsed().as_secs_f64();
     let report = report::build(
         &outcome,
@@ -245,30 +280,117 @@ fn beliefs(outcome: &Outcome, home: &Home) -> Vec<BTreeMap<ObjectId, Belief>> {
     outcome.history.iter().map(of_step).collect()
 }
 
+/// What a journal has to agree on with the run that goes on.
+fn heading(
+    settings: &RunSettings,
+    home: &Home,
+    model: &str,
+    scoring: Scoring,
+    calibration: Option<&Calibration>,
+    person: PersonKind,
+) -> JournalHeading {
+    JournalHeading {
+        version: JOURNAL_VERSION,
+        episode: home.episode.name.clone(),
+        now: home.episode.now,
+        users: home.roster.names().cloned().collect(),
+        objects: home.things.keys().cloned().collect(),
+        answered: home
+            .answered
+            .iter()
+            .map(|(object, &owners)| (object.clone(), home.roster.owners(owners)))
+            .collect(),
+        model: model.to_owned(),
+        gate: settings.gate,
+        lambda: calibration.map(|calibration| calibration.lambda),
+        seed: settings.seed,
+        reinference: settings.reinference,
+        withheld: settings.withheld.iter().copied().collect(),
+        scoring,
+        answers: person.as_str().to_owned(),
+    }
+}
+
+/// How the agent goes through a home.
+pub(crate) struct Course {
+    settings: AgentSettings,
+    withheld: BTreeSet<Withheld>,
+    scoring: Scoring,
+    concurrency: usize,
+    journal: Journal,
+    /// The answers from before the run; those that the server knows, where nothing is said.
+    answered_before: Option<BTreeMap<ObjectId, Owners>>,
+    stop: CancellationToken,
+}
+
+impl Course {
+    /// From the start to the end, with nothing kept for later.
+    pub(crate) fn new(
+        settings: AgentSettings,
+        withheld: BTreeSet<Withheld>,
+        scoring: Scoring,
+        concurrency: usize,
+    ) -> Self {
+        let (journal, stop) = (Journal::none(), CancellationToken::new());
+        Self { settings, withheld, scoring, concurrency, journal, answered_before: None, stop }
+    }
+
+    fn until(self, stop: CancellationToken) -> Self {
+        Self { stop, ..self }
+    }
+
+    fn going_on(self, journal: Journal, heading: &JournalHeading) -> Self {
+        Self { journal, answered_before: Some(heading.answered.clone()), ..self }
+    }
+
+    /// The answers that the agent knows when it starts. What the journal will tell again is not among them; what was
+    /// answered another way since is.
+    fn answered(&self, home: &Home) -> Result<BTreeMap<ObjectId, OwnerSet>, RosterError> {
+        let mut answered = home.answered.clone();
+        if let Some(before) = &self.answered_before {
+            for question in self.journal.past_questions() {
+                answered.remove(&question.object_id);
+            }
+            for (object, owners) in before {
+                answered.insert(object.clone(), home.roster.owner_set(owners)?);
+            }
+        }
+        Ok(answered)
+    }
+}
+
 /// Runs the agent in a home and says what it cost, without the time.
 pub(crate) async fn drive(
     home: &Home,
-    agent_settings: AgentSettings,
-    withheld: &BTreeSet<Withheld>,
+    course: Course,
     model: &dyn ChatModel,
     person: &mut dyn Person,
     observer: &mut dyn Observer,
 ) -> Result<(Outcome, coin_schemas::report::Cost), DriveError> {
-    let mut agent = Agent::new(agent_settings, home.things.keys().cloned());
-    for (object, &owners) in &home.answered {
-        agent.remember_answer(object, Reading { owners, outside_household: owners.is_empty() });
+    let malformed = |error: RosterError| DriveError::Malformed(error.to_string());
+    let answered = course.answered(home).map_err(malformed)?;
+    let Course { settings, withheld, scoring, concurrency, journal, stop, .. } = course;
+    let reinference = settings.reinference;
+    let mut agent = Agent::new(settings, home.things.keys().cloned());
+    for (object, owners) in answered {
+        agent.remember_answer(&object, Reading { owners, outside_household: owners.is_empty() });
     }
-    let steps = Steps::new(model, &home.server, &home.roster, withheld);
+    let steps = Steps::new(model, &home.server, &home.roster, &withheld, scoring);
+    let estimation = Estimation::new(&steps, withheld, home.episode.now, reinference).map_err(malformed)?;
+    let (scored_by, _) = scored_by(model.name(), scoring);
     let driver = Driver {
         steps: &steps,
+        estimation: &estimation,
         server: &home.server,
-        model: model.name(),
+        model: scored_by,
         roster: &home.roster,
         things: &home.things,
         as_of: home.episode.now,
-        concurrency: CONCURRENCY,
+        concurrency,
         person,
         observer,
+        journal,
+        stop,
     };
     let outcome = driver.run(agent).await?;
     Ok((outcome, steps.cost()))
@@ -276,11 +398,18 @@ pub(crate) async fn drive(
 
 /// The calibration that was handed in, which must be the model's own and of a model that was told as much, or the one
 /// of the program that goes with the gate.
-fn calibration_for(settings: &RunSettings, model: &str) -> Result<Option<Calibration>, CalibrationFileError> {
+fn calibration_for(
+    settings: &RunSettings,
+    model: &str,
+    scoring: Scoring,
+) -> Result<Option<Calibration>, CalibrationFileError> {
+    let (model, scoring) = scored_by(model, scoring);
     let Some(calibration) = &settings.calibration else {
         return match model {
-            EMBEDDED_MODEL => embedded_calibration(score_of(settings.gate), &settings.withheld)
-                .map_err(CalibrationFileError::BuiltIn),
+            EMBEDDED_MODEL if scoring.is_default() => {
+                embedded_calibration(score_of(settings.gate), &settings.withheld)
+                    .map_err(CalibrationFileError::BuiltIn)
+            }
             _ => Ok(None),
         };
     };
@@ -289,6 +418,12 @@ fn calibration_for(settings: &RunSettings, model: &str) -> Result<Option<Calibra
             return Err(CalibrationFileError::OtherModel {
                 made_for: calibration.model.clone(),
                 model: model.to_owned(),
+            });
+        }
+        if calibration.scoring != scoring {
+            return Err(CalibrationFileError::ScoredOtherwise {
+                calibration: calibration.scoring,
+                run: scoring,
             });
         }
         if calibration.withheld != settings.withheld {
@@ -323,7 +458,12 @@ fn scripted(file: &Path, episode: &Episode) -> Result<ScriptedPerson, ScriptErro
     ScriptedPerson::from_file(file, &things, &episode.users)
 }
 
-fn parameters(agent: &AgentSettings, person: PersonKind, withheld: &BTreeSet<Withheld>) -> Parameters {
+fn parameters(
+    agent: &AgentSettings,
+    person: PersonKind,
+    withheld: &BTreeSet<Withheld>,
+    scoring: Scoring,
+) -> Parameters {
     let Neighbourhood { k, sigma, gamma, .. } = Neighbourhood::default();
     Parameters {
         k_near: k,
@@ -337,6 +477,7 @@ fn parameters(agent: &AgentSettings, person: PersonKind, withheld: &BTreeSet<Wit
         max_questions: agent.max_questions,
         reinference: agent.reinference,
         withheld: withheld.clone(),
+        scoring,
         answers: person.as_str().to_owned(),
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::report::Withheld;
+use crate::report::{Scoring, Withheld};
 
 /// Which true owners a nonconformity score looks at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
@@ -74,6 +74,9 @@ pub struct Calibration {
     /// What the model was not told; thresholds of a model that knows less are no good for one that knows more.
     #[serde(default)]
     pub withheld: BTreeSet<Withheld>,
+    /// How the scores were made; thresholds of scores that are made otherwise mean something else.
+    #[serde(default, skip_serializing_if = "Scoring::is_default")]
+    pub scoring: Scoring,
     /// The program and version that wrote the file.
     pub created_with: String,
 }

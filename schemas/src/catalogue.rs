@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde_json::Value;
 
-use crate::{calibration, episode, events, experiment, model, report, tools};
+use crate::{calibration, episode, events, experiment, journal, model, report, tools};
 
 fn schema_of<T: JsonSchema>() -> Value {
     let mut schema = SchemaGenerator::from(SchemaSettings::draft2020_12()).into_root_schema_for::<T>();
@@ -34,8 +34,10 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("report.schema.json", schema_of::<report::Report>()),
         ("experiment-results.schema.json", schema_of::<experiment::ExperimentResults>()),
         ("log-event.schema.json", schema_of::<events::LogEvent>()),
+        ("journal-entry.schema.json", schema_of::<journal::JournalEntry>()),
         ("task.schema.json", schema_of::<model::Task>()),
         ("ownership-reply.schema.json", schema_of::<model::OwnershipReply>()),
+        ("ownerships-reply.schema.json", schema_of::<model::OwnershipsReply>()),
         ("reading-reply.schema.json", schema_of::<model::ReadingReply>()),
         ("sharing-reply.schema.json", schema_of::<model::SharingReply>()),
         ("get-usage-summary.arguments.schema.json", schema_of::<tools::GetUsageSummary>()),

@@ -118,7 +118,7 @@ pub struct ChatReply {
     /// The tokens that the turn took.
     pub usage: TokenUsage,
     /// Where the words come from.
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "Origin::is_model")]
     pub origin: Origin,
 }
 
@@ -157,13 +157,21 @@ pub enum Ending {
 }
 
 /// Where a reply comes from.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Origin {
     /// The model gave it just now.
     #[default]
     Model,
     /// The model gave it before to the same conversation, and it was kept.
     Memory,
+}
+
+impl Origin {
+    /// Whether the model was asked, which tapes leave unsaid.
+    pub fn is_model(&self) -> bool {
+        *self == Self::Model
+    }
 }
 
 /// Tokens of language-model traffic.

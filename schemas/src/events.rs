@@ -54,11 +54,11 @@ pub enum LogEvent {
         /// Its probability.
         confidence: f64,
     },
-    /// A model failed to score a thing.
-    InferenceFailed {
+    /// A model failed on a thing or had to be corrected. The scores follow as those of another event.
+    ModelFaltered {
         /// The thing.
         object_id: ObjectId,
-        /// Why.
+        /// What was wrong and what was done about it.
         reason: String,
     },
     /// A person is asked.
@@ -91,6 +91,13 @@ pub enum LogEvent {
     },
     /// A person would not answer.
     QuestionDeclined {
+        /// The number of the question, from 1.
+        step: usize,
+        /// The thing.
+        object_id: ObjectId,
+    },
+    /// The answer to a question was taken back; the question is put again.
+    AnswerUndone {
         /// The number of the question, from 1.
         step: usize,
         /// The thing.

@@ -11,6 +11,7 @@ pub mod episode;
 pub mod events;
 pub mod experiment;
 pub mod household;
+pub mod journal;
 pub mod model;
 pub mod report;
 pub mod tools;

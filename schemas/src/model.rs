@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::episode::EpisodeObject;
 use crate::household::{ClassLabel, ObjectId, Owners, OwnershipBoolean, Scores, UserName, Users};
+use crate::tools::{LookAlike, Neighbour, UsageSummary};
 
 /// The slots of one of the three model-driven steps, and of the one that a baseline has.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,11 +22,25 @@ pub enum Task {
     InferOwnership {
         /// The members of the household and their background.
         household: Users,
-        /// The thing in question.
-        object: TaskObject,
         /// The moment for which the question is put.
         #[schemars(with = "String")]
         as_of: DateTime,
+        /// The thing in question.
+        object: TaskObject,
+        /// What is known of it, where the model is to fetch nothing.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "GivenContext")]
+        context: Option<GivenContext>,
+    },
+    /// LLM-INFER for several things in one call. The reply is an [`OwnershipsReply`].
+    InferSeveral {
+        /// The members of the household and their background.
+        household: Users,
+        /// The moment for which the question is put.
+        #[schemars(with = "String")]
+        as_of: DateTime,
+        /// The things in question, each with what is known of it.
+        things: Vec<ThingInContext>,
     },
     /// QUESTION-GENERATION: word one question to a person. The reply is one sentence.
     AskQuestion {
@@ -60,6 +75,32 @@ pub enum Task {
     },
 }
 
+/// A thing, and what is known of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ThingInContext {
+    /// The thing.
+    pub object: TaskObject,
+    /// What is known of it.
+    pub context: GivenContext,
+}
+
+/// What the tools would have told of a thing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GivenContext {
+    /// Who used it; absent where somebody else weighs that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "UsageSummary")]
+    pub usage: Option<UsageSummary>,
+    /// What lies near it, nearest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub nearby_objects: Vec<Neighbour>,
+    /// What looks like it, most similar first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub similar_objects: Vec<LookAlike>,
+}
+
 /// A thing as a task names it: just what the map knows of it.
 pub type TaskObject = EpisodeObject;
 
@@ -73,6 +114,13 @@ pub struct OwnershipReply {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Vec<OwnerSetProbability>")]
     pub owner_sets: Option<Vec<OwnerSetProbability>>,
+}
+
+/// The reply to [`Task::InferSeveral`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OwnershipsReply {
+    /// For every thing a score for every member, each on its own between 0 and 1.
+    pub ownership_distributions: BTreeMap<ObjectId, Scores>,
 }
 
 /// How probable it is that exactly these people own a thing together.

@@ -66,6 +66,61 @@ pub enum Withheld {
     Usage,
 }
 
+/// What the scores of things are made from.
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Estimator {
+    /// The model alone, which sees the whole context (the paper's scheme; the embedded model is the evidence model).
+    #[default]
+    Model,
+    /// The evidence model alone; a language model words questions and reads answers.
+    Evidence,
+    /// One posterior of both: a language model says what common sense makes of the class, the people and the place,
+    /// the evidence model what the usage and the answers about other things say.
+    Fused,
+}
+
+/// How a model comes by what it judges from.
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum ContextSource {
+    /// It fetches it by tool calls.
+    #[default]
+    Tools,
+    /// It finds it in the prompt.
+    Given,
+}
+
+/// How the scores of things are made. Thresholds hold for scores that are made in the same way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scoring {
+    /// What they are made from.
+    pub estimator: Estimator,
+    /// How the model comes by what it judges from.
+    pub context: ContextSource,
+    /// How many things the model scores in one call.
+    #[schemars(range(min = 1))]
+    pub batch: usize,
+}
+
+impl Default for Scoring {
+    fn default() -> Self {
+        Self { estimator: Estimator::default(), context: ContextSource::default(), batch: 1 }
+    }
+}
+
+impl Scoring {
+    /// Whether scores are made as the paper has it, which files leave unsaid.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Which things are inferred again after an answer.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -107,6 +162,9 @@ pub struct Parameters {
     /// What the model was not told.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub withheld: BTreeSet<Withheld>,
+    /// How the scores were made.
+    #[serde(default, skip_serializing_if = "Scoring::is_default")]
+    pub scoring: Scoring,
     /// Who answered: `simulated`, `terminal` or `scripted`.
     pub answers: String,
 }
@@ -133,7 +191,12 @@ pub struct ObjectReport {
     pub confidence: f64,
     /// Whether DETECT-SHARE holds the thing to be shared.
     pub shared: bool,
-    /// The model failed on this thing, and this is why; its scores say nothing then.
+    /// The two parts that the scores were fused from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ScoreParts")]
+    pub parts: Option<ScoreParts>,
+    /// The model failed on this thing or had to be corrected, and this is what was done about it. A confidence of 0 says
+    /// that nothing else could score the thing either.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub problem: Option<String>,
@@ -141,6 +204,18 @@ pub struct ObjectReport {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Owners")]
     pub truth: Option<Owners>,
+}
+
+/// What each part of a fused score says by itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScoreParts {
+    /// What the language model makes of the class, the people and the place; absent where it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Scores")]
+    pub model: Option<Scores>,
+    /// What the evidence model makes of the usage and of the answers about other things.
+    pub evidence: Scores,
 }
 
 /// What became of an answer.
@@ -235,12 +310,19 @@ pub struct Cost {
     pub model_calls: u64,
     /// Tool calls that the model made.
     pub tool_calls: u64,
+    /// Replies that were taken from the cache in place of a request.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub remembered_replies: u64,
     /// Tokens sent to a language model; the embedded model uses none.
     pub prompt_tokens: u64,
     /// Tokens received from a language model; the embedded model uses none.
     pub completion_tokens: u64,
     /// Wall-clock time, in seconds. The one field that differs between equal runs.
     pub seconds: f64,
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Why a run ended.
@@ -253,4 +335,8 @@ pub enum Stopped {
     MaxQuestions,
     /// Something is unsettled, but nobody can or will say more about it.
     NothingLeftToAsk,
+    /// The tokens that could be spent were spent.
+    Budget,
+    /// The person who answers ended it for now, or the program was told to stop.
+    Interrupted,
 }

@@ -2,6 +2,7 @@
 
 use coin_schemas::household::{ObjectId, Score};
 use coin_schemas::model::RelatedObjects;
+use coin_schemas::report::Stopped;
 
 use crate::dialogue::Reading;
 use crate::owners::OwnerSetDistribution;
@@ -34,15 +35,33 @@ pub enum Event {
     Declined,
     /// There is nobody left to ask.
     NobodyLeft,
+    /// The run ends here, whatever is under way; what has been concluded so far is kept.
+    Ended {
+        /// Why.
+        stopped: Stopped,
+    },
 }
 
-/// A model's belief about one thing.
-#[derive(Debug, Clone, PartialEq)]
+/// A belief about one thing.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Inference {
     /// The score of every member, in the order of the roster.
     pub scores: Vec<Score>,
     /// The probabilities of owner sets: the model's own, or those that the scores imply.
     pub distribution: OwnerSetDistribution,
-    /// The things whose known owners the model could see.
+    /// The things whose known owners it rests on.
     pub related: RelatedObjects,
+    /// What its two parts say by themselves, where it was fused from two.
+    pub parts: Option<Parts>,
+    /// What went wrong on the way and what was done about it, for the reader of the report.
+    pub problem: Option<String>,
+}
+
+/// The two parts of a fused belief: every member's score, in the order of the roster.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    /// What a language model makes of the class, the people and the place; `None` where it failed.
+    pub model: Option<Vec<Score>>,
+    /// What the evidence model makes of the usage and of the answers about other things.
+    pub evidence: Vec<Score>,
 }

@@ -16,7 +16,7 @@ use coin_schemas::report::{Gate, Stopped};
 use thiserror::Error;
 
 pub use effect::Effect;
-pub use event::{Event, Inference};
+pub use event::{Event, Inference, Parts};
 pub use state::{Known, KnownSource, ObjectState};
 
 use crate::calibration::Thresholds;
@@ -137,7 +137,20 @@ impl Agent {
                 self.open_question()?;
                 Ok(self.finish(Stopped::NothingLeftToAsk))
             }
+            Event::Ended { stopped } => Ok(self.end(stopped)),
         }
+    }
+
+    /// Ends the run from wherever it is. The results of a pass that is not complete are taken in as they are.
+    fn end(&mut self, stopped: Stopped) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        match std::mem::replace(&mut self.phase, Phase::Finished) {
+            Phase::Inferring { finished, .. } => effects.extend(self.take_in(finished)),
+            Phase::Finished => return effects,
+            Phase::Idle | Phase::Asking { .. } => {}
+        }
+        effects.extend(self.finish(stopped));
+        effects
     }
 
     fn open_question(&self) -> Result<ObjectId, UnexpectedEvent> {
@@ -202,6 +215,13 @@ impl Agent {
             return Ok(Vec::new());
         }
         let finished = std::mem::take(finished);
+        let mut effects = self.take_in(finished);
+        effects.extend(self.ask_or_finish());
+        Ok(effects)
+    }
+
+    /// Takes in the results of a pass.
+    fn take_in(&mut self, finished: BTreeMap<ObjectId, Result<Inference, String>>) -> Vec<Effect> {
         let mut recorded: Vec<ObjectId> = Vec::new();
         for (object, result) in finished {
             let Some(state) = self.objects.get_mut(&object) else { continue };
@@ -214,28 +234,27 @@ impl Agent {
             }
         }
         recorded.sort_by(compare_ids);
-        let mut effects = Vec::new();
-        if !recorded.is_empty() {
-            effects.push(Effect::Record { objects: recorded });
+        match recorded.is_empty() {
+            true => Vec::new(),
+            false => vec![Effect::Record { objects: recorded }],
         }
-        effects.extend(self.ask_or_finish());
-        Ok(effects)
+    }
+
+    /// The things that nobody has answered about and that the gate would have asked about.
+    pub fn unsettled(&self) -> impl Iterator<Item = (&ObjectId, &ObjectState)> {
+        let AgentSettings { gate, thresholds, .. } = &self.settings;
+        self.objects.iter().filter(|(_, state)| state.answer().is_none()).filter(|(_, state)| {
+            state
+                .assessment()
+                .map_or(*gate != Gate::Never, |assessment| wants_to_ask(*gate, thresholds, assessment))
+        })
     }
 
     /// Lines 13 to 17 of Algorithm 1: stop where the gate finds nothing to ask, else ask about the least sure.
     /// Things that were asked about less often come first.
     fn ask_or_finish(&mut self) -> Vec<Effect> {
-        let AgentSettings { gate, thresholds, .. } = &self.settings;
-        let unsettled: Vec<(&ObjectId, &ObjectState)> = self
-            .objects
-            .iter()
-            .filter(|(_, state)| state.answer().is_none())
-            .filter(|(_, state)| {
-                state
-                    .assessment()
-                    .map_or(*gate != Gate::Never, |assessment| wants_to_ask(*gate, thresholds, assessment))
-            })
-            .collect();
+        let gate = self.settings.gate;
+        let unsettled: Vec<(&ObjectId, &ObjectState)> = self.unsettled().collect();
         if unsettled.is_empty() {
             return self.finish(Stopped::Confident);
         }
@@ -248,7 +267,7 @@ impl Agent {
             .min_by(|left, right| {
                 left.1.times_asked().cmp(&right.1.times_asked()).then_with(|| {
                     match (left.1.assessment(), right.1.assessment()) {
-                        (Some(a), Some(b)) => compare_priority(*gate, (left.0, a), (right.0, b)),
+                        (Some(a), Some(b)) => compare_priority(gate, (left.0, a), (right.0, b)),
                         (None, Some(_)) => std::cmp::Ordering::Less,
                         (Some(_), None) => std::cmp::Ordering::Greater,
                         (None, None) => compare_ids(left.0, right.0),

@@ -4,7 +4,7 @@ use coin_schemas::household::Score;
 use coin_schemas::model::RelatedObjects;
 use coin_schemas::report::Gate;
 
-use super::{AgentSettings, Inference, KNOWN_CONFIDENCE, MOST_TIMES_ASKED};
+use super::{AgentSettings, Inference, KNOWN_CONFIDENCE, MOST_TIMES_ASKED, Parts};
 use crate::calibration::Assessment;
 use crate::dialogue::Reading;
 use crate::owners::{OwnerSet, OwnerSetDistribution};
@@ -75,12 +75,17 @@ impl ObjectState {
         }
     }
 
+    /// What the two parts of the belief say, where it was fused from two.
+    pub fn parts(&self) -> Option<&Parts> {
+        self.belief.as_ref().and_then(|belief| belief.inference.parts.as_ref())
+    }
+
     /// How often a person was asked about the thing.
     pub fn times_asked(&self) -> u32 {
         self.times_asked
     }
 
-    /// Why the model failed on the thing when it was last tried.
+    /// What went wrong when the thing was last inferred, and what was done about it.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
@@ -123,8 +128,8 @@ impl ObjectState {
             Gate::Paper => crate::sharing::owner_set(&inference.scores, &settings.share),
             Gate::Risk | Gate::Set | Gate::Always | Gate::Never => assessment.owners,
         };
+        self.problem.clone_from(&inference.problem);
         self.belief = Some(Belief { inference, assessment, owners });
-        self.problem = None;
     }
 
     /// An earlier belief stays; the reader of the report learns that it could not be renewed.

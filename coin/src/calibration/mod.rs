@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
 use coin_schemas::household::Score;
-use coin_schemas::report::Withheld;
+use coin_schemas::report::{Scoring, Withheld};
 use thiserror::Error;
 
 use crate::conformal::risk::{Outcome, RiskSample, risk_threshold};
@@ -51,6 +51,8 @@ pub struct Provenance {
     pub history: History,
     /// What the model was not told.
     pub withheld: BTreeSet<Withheld>,
+    /// How the scores were made.
+    pub scoring: Scoring,
 }
 
 /// Why there is no calibration.
@@ -92,7 +94,7 @@ pub fn calibrate(
             RiskSample { confidence, outcome }
         })
         .collect();
-    let Provenance { model, episodes, history, withheld } = provenance;
+    let Provenance { model, episodes, history, withheld, scoring } = provenance;
     Ok(Calibration {
         version: CALIBRATION_VERSION,
         model,
@@ -109,6 +111,7 @@ pub fn calibrate(
         episodes,
         history,
         withheld,
+        scoring,
         created_with: concat!("coin ", env!("CARGO_PKG_VERSION")).to_owned(),
     })
 }

@@ -1,6 +1,7 @@
 //! Thresholds that can be worked out by hand, and what they settle.
 
 use coin_schemas::model::OwnerSetProbability;
+use coin_schemas::report::Scoring;
 use proptest::prelude::*;
 use rstest::rstest;
 
@@ -64,6 +65,7 @@ fn nine_things_have_the_thresholds_of_the_equations() {
         episodes: ["home-1", "home-2", "home-3"].map(str::to_owned).to_vec(),
         history: History::Whole,
         withheld: BTreeSet::new(),
+        scoring: Scoring::default(),
         created_with: concat!("coin ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
     assert_eq!(calibrated(&nine_things(), levels(0.2, 0.3, 0.2)), expected);

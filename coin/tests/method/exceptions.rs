@@ -287,3 +287,35 @@ mod out_of_place {
         assert_not_asking(&run);
     }
 }
+
+mod an_end_from_outside {
+    use super::*;
+
+    #[test]
+    fn keeps_what_a_pass_has_brought_so_far() {
+        let mut run = Run::new(the_papers(), &["1", "2"]);
+        run.handle(Event::Started);
+        run.handle(inferred("2", SURE));
+        assert_eq!(run.handle(ended()), [record(&["2"]), finish(Stopped::Interrupted)]);
+        assert_eq!(run.thing("2").owners(), set(&[0]));
+        assert_eq!(run.thing("1").scores(), None);
+    }
+
+    #[test]
+    fn leaves_an_open_question_open() {
+        let mut run = two_doubtful(the_papers());
+        assert_eq!(run.handle(ended()), [finish(Stopped::Interrupted)]);
+        assert_eq!((run.agent.questions(), run.thing("1").times_asked()), (0, 0));
+    }
+
+    #[test]
+    fn is_nothing_to_a_run_that_is_over() {
+        let mut run = two_doubtful(the_papers());
+        run.handle(ended());
+        assert_eq!(run.handle(ended()), []);
+    }
+
+    fn ended() -> Event {
+        Event::Ended { stopped: Stopped::Interrupted }
+    }
+}

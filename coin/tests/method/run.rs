@@ -56,7 +56,7 @@ pub(crate) fn finish(stopped: Stopped) -> Effect {
 pub(crate) fn inference(values: &[f64], related: &[&str]) -> Inference {
     let scores = scores(values);
     let distribution = OwnerSetDistribution::from_scores(&scores);
-    Inference { scores, distribution, related: ids(related).into_iter().collect() }
+    Inference { scores, distribution, related: ids(related).into_iter().collect(), ..Inference::default() }
 }
 
 pub(crate) fn inferred(object: &str, values: &[f64]) -> Event {

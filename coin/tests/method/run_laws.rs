@@ -60,7 +60,10 @@ impl World {
         let mut related: BTreeSet<ObjectId> = self.objects().into_iter().collect();
         related.retain(|other| other != object && generator.random_range(0..3) == 0);
         let distribution = OwnerSetDistribution::from_scores(&scores);
-        Event::Inferred { object: object.clone(), inference: Inference { scores, distribution, related } }
+        Event::Inferred {
+            object: object.clone(),
+            inference: Inference { scores, distribution, related, ..Inference::default() },
+        }
     }
 
     fn reply(&self, object: &ObjectId, question: usize) -> Event {
@@ -213,6 +216,7 @@ proptest! {
             Stopped::Confident => prop_assert_eq!(open, []),
             Stopped::MaxQuestions => prop_assert_eq!(trace.agent.questions(), world.settings.max_questions),
             Stopped::NothingLeftToAsk => prop_assert!(!open.is_empty()),
+            Stopped::Budget | Stopped::Interrupted => prop_assert!(false, "nobody ended the run"),
         }
     }
 

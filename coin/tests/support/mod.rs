@@ -87,5 +87,6 @@ pub(crate) fn provenance(model: &str, households: usize) -> coin::calibration::P
         episodes: (1..=households).map(|number| format!("home-{number}")).collect(),
         history: coin_schemas::calibration::History::Whole,
         withheld: std::collections::BTreeSet::new(),
+        scoring: coin_schemas::report::Scoring::default(),
     }
 }

@@ -7,6 +7,7 @@ use coin::baselines::actowl::{ActOwl, Priors, Sampling, Things, visual_words};
 use coin::owners::OwnerSet;
 use coin_schemas::household::{ClassLabel, ObjectId, Score};
 use coin_schemas::model::{Task, TaskObject};
+use coin_schemas::report::Scoring;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -27,7 +28,7 @@ pub(super) async fn run(
     seed: u64,
 ) -> Result<MethodOutcome, RunError> {
     let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
-    let steps = Steps::new(model, &home.server, &home.roster, &BTreeSet::new());
+    let steps = Steps::new(model, &home.server, &home.roster, &BTreeSet::new(), Scoring::default());
     let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
 
     let objects = &judged.loaded.episode.objects;

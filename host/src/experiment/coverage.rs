@@ -19,10 +19,11 @@ use super::{
     Calibrations, CoverageHomes, ExperimentError, ExperimentSettings, JudgedHome, Progress, default_kind,
     load_home,
 };
-use crate::calibrate::{ScoredHome, score_homes};
+use crate::calibrate::{HomeScoring, ScoredHome, score_homes};
 use crate::generate::{self, Protocol, RoutineSettings};
 use crate::model::ChatModel;
 use crate::parallel;
+use crate::run::{CONCURRENCY, default_scoring};
 
 /// The homes that thresholds are made from where none are given: those of the built-in calibration.
 const CALIBRATION_SEED: u64 = 1001;
@@ -57,6 +58,7 @@ impl Promises {
             episodes: homes.map(|home| home.name.clone()).collect(),
             history: History::Whole,
             withheld: BTreeSet::new(),
+            scoring: default_scoring(model),
         };
         let with = |score| calibrate(provenance.clone(), &samples, settings.levels, score);
         Ok(Self {
@@ -121,7 +123,13 @@ async fn score(
     progress: &mut (dyn Progress + Send),
 ) -> Result<Vec<ScoredHome>, ExperimentError> {
     progress.begin(homes.len(), "homes scored");
-    let scored = score_homes(homes, History::Whole, &BTreeSet::new(), model, || progress.step()).await?;
+    let how = HomeScoring {
+        history: History::Whole,
+        withheld: BTreeSet::new(),
+        scoring: default_scoring(model.name()),
+        concurrency: CONCURRENCY,
+    };
+    let scored = score_homes(homes, &how, model, || progress.step()).await?;
     progress.end();
     Ok(scored)
 }
@@ -214,7 +222,7 @@ async fn wrong_in_the_end(
     progress: &mut (dyn Progress + Send),
 ) -> Result<(usize, usize), ExperimentError> {
     let calibrations: Arc<Calibrations> =
-        Arc::new([(default_kind(), Some(promises.all_owners.clone()))].into());
+        Arc::new([(default_kind(model.name()), Some(promises.all_owners.clone()))].into());
     let jobs = homes.iter().cloned().map(|folder| {
         let (model, calibrations) = (Arc::clone(model), Arc::clone(&calibrations));
         async move {

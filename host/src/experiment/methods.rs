@@ -12,7 +12,7 @@ use coin::usage::UsageEvent;
 use coin_schemas::calibration::NonconformityScore;
 use coin_schemas::experiment::Method;
 use coin_schemas::household::ObjectId;
-use coin_schemas::report::{Cost, Gate, Withheld};
+use coin_schemas::report::{Cost, Gate, Scoring, Withheld};
 
 use super::{Calibrations, JudgedHome, actowl};
 use crate::client::ServerAddress;
@@ -20,7 +20,7 @@ use crate::driver::{Standing, Unobserved};
 use crate::home::Home;
 use crate::model::ChatModel;
 use crate::person::SimulatedPerson;
-use crate::run::{RunError, drive};
+use crate::run::{CONCURRENCY, Course, RunError, default_scoring, drive};
 
 /// What came of one run of one method.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,18 +36,36 @@ struct Variant {
     gate: Gate,
     reinference: Reinference,
     withheld: &'static [Withheld],
+    scorer: Scorer,
+}
+
+/// Who scores the things.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Scorer {
+    /// What suits the model: a language model together with the evidence model.
+    Ours,
+    /// The model alone.
+    ModelAlone,
 }
 
 fn variant(method: Method) -> Option<Variant> {
-    let coin = Variant { gate: Gate::Risk, reinference: Reinference::AnsweredContext, withheld: &[] };
+    let coin = Variant {
+        gate: Gate::Risk,
+        reinference: Reinference::AnsweredContext,
+        withheld: &[],
+        scorer: Scorer::Ours,
+    };
+    let the_papers = Variant { scorer: Scorer::ModelAlone, ..coin };
     match method {
         Method::Coin => Some(coin),
         Method::CoinPaper => {
-            Some(Variant { gate: Gate::Paper, reinference: Reinference::EveryUnasked, ..coin })
+            Some(Variant { gate: Gate::Paper, reinference: Reinference::EveryUnasked, ..the_papers })
         }
-        Method::NlmapLlm => {
-            Some(Variant { gate: Gate::Never, withheld: &[Withheld::Background, Withheld::Usage], ..coin })
-        }
+        Method::NlmapLlm => Some(Variant {
+            gate: Gate::Never,
+            withheld: &[Withheld::Background, Withheld::Usage],
+            ..the_papers
+        }),
         Method::NoQuestions => Some(Variant { gate: Gate::Never, ..coin }),
         Method::NoBackground => Some(Variant { withheld: &[Withheld::Background], ..coin }),
         Method::NoUsage => Some(Variant { withheld: &[Withheld::Usage], ..coin }),
@@ -62,18 +80,27 @@ pub(super) struct CalibrationKind {
     pub(super) withheld: BTreeSet<Withheld>,
     /// The score of prediction sets over members.
     pub(super) score: NonconformityScore,
+    /// How the things are scored.
+    pub(super) scoring: Scoring,
 }
 
 impl Variant {
-    fn calibration(&self) -> CalibrationKind {
-        CalibrationKind { withheld: self.withheld.iter().copied().collect(), score: score_of(self.gate) }
+    fn calibration(&self, model: &str) -> CalibrationKind {
+        CalibrationKind {
+            withheld: self.withheld.iter().copied().collect(),
+            score: score_of(self.gate),
+            scoring: match self.scorer {
+                Scorer::Ours => default_scoring(model),
+                Scorer::ModelAlone => Scoring::default(),
+            },
+        }
     }
 }
 
 /// The thresholds that a method compares with; `None` where it compares with none.
-pub(super) fn calibration(method: Method) -> Option<CalibrationKind> {
+pub(super) fn calibration(method: Method, model: &str) -> Option<CalibrationKind> {
     let variant = variant(method).filter(|variant| variant.gate != Gate::Never)?;
-    Some(variant.calibration())
+    Some(variant.calibration(model))
 }
 
 /// Runs a method in a home of its own, from the captions to the last answer.
@@ -102,7 +129,7 @@ async fn agent(
     calibrations: &Calibrations,
     seed: u64,
 ) -> Result<MethodOutcome, RunError> {
-    let kind = variant.calibration();
+    let kind = variant.calibration(model.name());
     let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
     let settings = AgentSettings {
         gate: variant.gate,
@@ -115,7 +142,8 @@ async fn agent(
         reinference: variant.reinference,
     };
     let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
-    let (outcome, cost) = drive(&home, settings, &kind.withheld, model, &mut person, &mut Unobserved).await?;
+    let course = Course::new(settings, kind.withheld, kind.scoring, CONCURRENCY);
+    let (outcome, cost) = drive(&home, course, model, &mut person, &mut Unobserved).await?;
     home.server.close().await;
     let owners = |standings: BTreeMap<ObjectId, Standing>| {
         standings.into_iter().map(|(object, standing)| (object, standing.owners)).collect()

@@ -31,7 +31,7 @@ use crate::home::{self, HomeError};
 use crate::model::ChatModel;
 use crate::model::counted::{Counted, TokenizerError};
 use crate::parallel;
-use crate::run::RunError;
+use crate::run::{CONCURRENCY, RunError, default_scoring};
 use methods::CalibrationKind;
 
 pub use tables::{summary, tables};
@@ -183,7 +183,7 @@ pub async fn run(
     progress.end();
 
     let coverage = coverage::measure(settings, &model, progress).await?;
-    let calibration = calibrations.get(&default_kind()).cloned().flatten();
+    let calibration = calibrations.get(&default_kind(model.name())).cloned().flatten();
     Ok(ExperimentResults {
         episodes: homes.iter().map(|home| home.loaded.episode.name.clone()).collect(),
         trials: settings.trials,
@@ -234,8 +234,9 @@ impl JudgedHome {
 }
 
 /// The thresholds of the default gate.
-fn default_kind() -> CalibrationKind {
-    CalibrationKind { withheld: BTreeSet::new(), score: NonconformityScore::AllOwners }
+fn default_kind(model: &str) -> CalibrationKind {
+    let (withheld, scoring) = (BTreeSet::new(), default_scoring(model));
+    CalibrationKind { withheld, score: NonconformityScore::AllOwners, scoring }
 }
 
 /// One calibration for each kind that the methods need, so that an ablation is judged by thresholds of its own.
@@ -245,8 +246,8 @@ async fn calibrations(
     progress: &mut (dyn Progress + Send),
 ) -> Result<Calibrations, ExperimentError> {
     let mut kinds: BTreeSet<CalibrationKind> =
-        settings.methods.iter().filter_map(|&method| methods::calibration(method)).collect();
-    kinds.insert(default_kind());
+        settings.methods.iter().filter_map(|&method| methods::calibration(method, model.name())).collect();
+    kinds.insert(default_kind(model.name()));
     let mut calibrations = Calibrations::new();
     for kind in kinds {
         let calibration = match (settings.calibrate_on.is_empty(), model.name()) {
@@ -262,6 +263,8 @@ async fn calibrations(
                     score: kind.score,
                     history: History::Whole,
                     withheld: kind.withheld.clone(),
+                    scoring: kind.scoring,
+                    concurrency: CONCURRENCY,
                 };
                 let made = calibrate_on(&settings, model, || progress.step()).await?;
                 progress.end();

@@ -3,20 +3,25 @@
 //! It knows nothing but the conversation. Given a task it asks for the tools that it needs, reads their results
 //! from the conversation, and answers in the form that a language model is asked for.
 
+use std::collections::BTreeMap;
+
 use async_trait::async_trait;
 use coin::calibration::EMBEDDED_MODEL;
 use coin::common_sense::{Tendency, expect, tendency};
 use coin::dialogue::{QuestionContext, read_answer, word_question};
-use coin::evidence::{EvidenceParameters, KnownRelative, Relation, likeness_counts, posterior};
+use coin::evidence::{EvidenceParameters, Opinion};
 use coin::roster::Roster;
-use coin_schemas::household::{Owners, Source};
-use coin_schemas::model::{OwnershipReply, ReadingReply, SharingReply, Task, TaskObject};
-use coin_schemas::tools::{KnownOwnership, NearbyObjectsResult, SimilarObjectsResult, UsageSummary};
+use coin_schemas::model::{
+    GivenContext, OwnershipReply, OwnershipsReply, ReadingReply, SharingReply, Task, TaskObject,
+    ThingInContext,
+};
+use coin_schemas::tools::{NearbyObjectsResult, SimilarObjectsResult, UsageSummary};
 use jiff::civil::DateTime;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 
 use super::{ChatModel, ChatReply, ChatRequest, Message, ModelError, ToolArguments, ToolCall};
+use crate::evidence::judge;
 
 /// The tools that the evidence model reads.
 const USAGE: &str = "get_usage_summary";
@@ -56,31 +61,30 @@ impl EmbeddedModel {
             return Ok(ChatReply::calls(wanted));
         }
 
-        let sessions = sessions(roster, result::<UsageSummary>(request, USAGE)?)?;
-        let mut relatives = Vec::new();
-        if let Some(nearby) = result::<NearbyObjectsResult>(request, NEARBY)? {
-            for neighbour in nearby.nearby_objects {
-                let relation = Relation::Near { weight: neighbour.weight };
-                relatives.extend(answered(roster, neighbour.known_ownership, relation)?);
-            }
-        }
-        if let Some(similar) = result::<SimilarObjectsResult>(request, SIMILAR)? {
-            let own_class = similar.object.name;
-            for look_alike in similar.similar_objects {
-                if !likeness_counts(&own_class, &look_alike.name) {
-                    continue;
-                }
-                let relation = Relation::LooksAlike { similarity: look_alike.similarity };
-                relatives.extend(answered(roster, look_alike.known_ownership, relation)?);
-            }
-        }
+        let context = GivenContext {
+            usage: result::<UsageSummary>(request, USAGE)?,
+            nearby_objects: result::<NearbyObjectsResult>(request, NEARBY)?
+                .map_or_else(Vec::new, |result| result.nearby_objects),
+            similar_objects: result::<SimilarObjectsResult>(request, SIMILAR)?
+                .map_or_else(Vec::new, |result| result.similar_objects),
+        };
+        say(&self.judge(roster, object, &context)?)
+    }
+
+    fn judge(
+        &self,
+        roster: &Roster,
+        object: &TaskObject,
+        context: &GivenContext,
+    ) -> Result<OwnershipReply, ModelError> {
         let expectation = expect(object.class.as_str(), roster);
-        let distribution = posterior(&sessions, expectation.as_ref().into(), &relatives, &self.parameters);
-        let reply = OwnershipReply {
+        let opinion = Opinion::from(expectation.as_ref());
+        let distribution =
+            judge(roster, &object.class, context, opinion, &self.parameters).map_err(malformed)?;
+        Ok(OwnershipReply {
             ownership_distribution: roster.scores(&distribution.marginals(roster.len())),
             owner_sets: Some(distribution.to_named(roster)),
-        };
-        say(&reply)
+        })
     }
 }
 
@@ -92,8 +96,21 @@ impl ChatModel for EmbeddedModel {
 
     async fn complete(&self, request: &ChatRequest<'_>) -> Result<ChatReply, ModelError> {
         match task(request)? {
-            Task::InferOwnership { household, object, as_of } => {
+            Task::InferOwnership { household, as_of, object, context: None } => {
                 self.infer(request, &roster(&household)?, &object, as_of)
+            }
+            Task::InferOwnership { household, object, context: Some(context), .. } => {
+                say(&self.judge(&roster(&household)?, &object, &context)?)
+            }
+            Task::InferSeveral { household, things, .. } => {
+                let roster = roster(&household)?;
+                let scores = |thing: &ThingInContext| {
+                    let reply = self.judge(&roster, &thing.object, &thing.context)?;
+                    Ok((thing.object.id.clone(), reply.ownership_distribution))
+                };
+                let ownership_distributions =
+                    things.iter().map(scores).collect::<Result<BTreeMap<_, _>, ModelError>>()?;
+                say(&OwnershipsReply { ownership_distributions })
             }
             Task::AskQuestion { household, object, scores, times_asked } => {
                 let roster = roster(&household)?;
@@ -190,28 +207,4 @@ fn result<T: DeserializeOwned>(request: &ChatRequest<'_>, name: &str) -> Result<
                 .map_err(|error| malformed(format!("the answer of {name} is not in its form: {error}")))
         })
         .transpose()
-}
-
-fn sessions(roster: &Roster, summary: Option<UsageSummary>) -> Result<Vec<u64>, ModelError> {
-    let mut sessions = vec![0; roster.len()];
-    for usage in summary.into_iter().flat_map(|summary| summary.user_summary) {
-        let user = roster.index_of(usage.user_id.as_str()).map_err(malformed)?;
-        sessions[user.place()] = usage.sessions;
-    }
-    Ok(sessions)
-}
-
-/// Only what a person said is passed on: an inferred owner rests on the same evidence as the thing in question,
-/// and feeding it back would count that evidence twice.
-fn answered(
-    roster: &Roster,
-    known: Option<KnownOwnership>,
-    relation: Relation,
-) -> Result<Option<KnownRelative>, ModelError> {
-    let owners: Owners = match known {
-        Some(KnownOwnership { owners, source: Source::Answer, .. }) => owners,
-        _ => return Ok(None),
-    };
-    let owners = roster.owner_set(&owners).map_err(malformed)?;
-    Ok(Some(KnownRelative { owners, relation }))
 }

@@ -16,6 +16,9 @@ use crate::person::PersonKind;
 /// How many changed things a line lists.
 const CHANGES_LISTED: usize = 6;
 
+/// How many things that the model faltered on are named in a pass.
+const FALTERS_TOLD: usize = 3;
+
 /// A belief as it was before an answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Belief<'a> {
@@ -65,6 +68,8 @@ pub struct Narration {
     bars: Bars,
     bar: Option<ProgressBar>,
     household: Owners,
+    /// How many things the model faltered on in this pass.
+    faltered: usize,
 }
 
 /// Whether progress is drawn while a model works.
@@ -79,7 +84,7 @@ pub(super) enum Bars {
 impl Narration {
     /// A story that is told to `writer`. A question that a person sees at the terminal is not told again.
     pub(super) fn new(writer: Box<dyn Write + Send>, style: Style, person: PersonKind, bars: Bars) -> Self {
-        Self { writer, style, person, bars, bar: None, household: Owners::new() }
+        Self { writer, style, person, bars, bar: None, household: Owners::new(), faltered: 0 }
     }
 
     /// A story that nobody hears.
@@ -125,14 +130,22 @@ impl Narration {
         }
     }
 
-    /// The model failed on a thing, which is given up for this pass.
-    pub fn inference_failed(&mut self, object_id: &ObjectId, class: &ClassLabel, reason: &str) {
-        self.object_inferred();
-        self.warning(&format!("the model failed on {}: {reason}", thing(object_id, class)));
+    /// The model failed on a thing or had to be corrected. A server that is gone fails on everything, so that only the
+    /// first things of a pass are named.
+    pub fn model_faltered(&mut self, object_id: &ObjectId, class: &ClassLabel, reason: &str) {
+        self.faltered += 1;
+        if self.faltered <= FALTERS_TOLD {
+            self.warning(&format!("{}: {reason}", thing(object_id, class)));
+        }
     }
 
     /// Every thing of the pass is scored.
     pub fn inference_finished(&mut self) {
+        let faltered = std::mem::take(&mut self.faltered);
+        if faltered > FALTERS_TOLD {
+            let more = count((faltered - FALTERS_TOLD) as u64, "thing", "things");
+            self.warning(&format!("so it went with {more} more; the report names them"));
+        }
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
@@ -203,6 +216,11 @@ impl Narration {
     /// A person would not answer.
     pub fn declined(&mut self) {
         self.tell_aside("No answer.");
+    }
+
+    /// An answer was taken back.
+    pub fn answer_undone(&mut self, step: usize) {
+        self.tell_aside(&format!("The answer to Q{step} is taken back."));
     }
 
     /// Nobody is left to ask.

@@ -1,6 +1,6 @@
 //! What a run took, why it ended, and what may be relied on.
 
-use coin_schemas::report::{Gate, Report, Stopped};
+use coin_schemas::report::{ContextSource, Cost, Estimator, Gate, Report, Scoring, Stopped};
 
 use super::guarantee::guarantee;
 use super::{count, is_unsettled, is_wrong};
@@ -11,19 +11,7 @@ pub(crate) fn facts(report: &Report) -> Vec<(&'static str, String)> {
     let cost = &report.cost;
     let mut rows = Vec::new();
     rows.extend(correct(report).map(|correct| ("correct", correct)));
-    rows.extend([
-        ("questions", questions(report)),
-        ("ended", ended(report)),
-        (
-            "effort",
-            format!(
-                "{}, {}, {}",
-                count(cost.model_calls, "model call", "model calls"),
-                count(cost.tool_calls, "tool call", "tool calls"),
-                duration(cost.seconds),
-            ),
-        ),
-    ]);
+    rows.extend([("questions", questions(report)), ("ended", ended(report)), ("effort", effort(cost))]);
     if cost.prompt_tokens + cost.completion_tokens > 0 {
         let sent = count(cost.prompt_tokens, "sent", "sent");
         let received = count(cost.completion_tokens, "received", "received");
@@ -32,6 +20,16 @@ pub(crate) fn facts(report: &Report) -> Vec<(&'static str, String)> {
     rows.push(("settings", settings(report)));
     rows.push(("guarantee", guarantee(report)));
     rows
+}
+
+fn effort(cost: &Cost) -> String {
+    let mut parts = vec![count(cost.model_calls, "model call", "model calls")];
+    if cost.remembered_replies > 0 {
+        parts.push(count(cost.remembered_replies, "remembered reply", "remembered replies"));
+    }
+    parts.push(count(cost.tool_calls, "tool call", "tool calls"));
+    parts.push(duration(cost.seconds));
+    parts.join(", ")
 }
 
 fn correct(report: &Report) -> Option<String> {
@@ -48,7 +46,30 @@ fn settings(report: &Report) -> String {
         Gate::Always => "always",
         Gate::Never => "never",
     };
-    format!("model {}, gate {gate}, seed {}", plain_text(&report.model), report.seed)
+    let model = plain_text(&report.model);
+    let scoring = scoring(report.parameters.scoring);
+    format!("model {model}, {scoring}gate {gate}, seed {}", report.seed)
+}
+
+/// How the scores were made; nothing where it was as the paper has it.
+fn scoring(scoring: Scoring) -> String {
+    let Scoring { estimator, context, batch } = scoring;
+    if scoring.is_default() {
+        return String::new();
+    }
+    let by = match estimator {
+        Estimator::Model => "its scores alone",
+        Estimator::Evidence => return "the evidence model's scores, ".to_owned(),
+        Estimator::Fused => "its scores fused with the evidence",
+    };
+    let from = match context {
+        ContextSource::Tools => "context by tool calls",
+        ContextSource::Given => "context in the prompt",
+    };
+    match batch {
+        1 => format!("{by}, {from}, "),
+        many => format!("{by}, {from} of {many} things at once, "),
+    }
 }
 
 fn questions(report: &Report) -> String {
@@ -76,6 +97,8 @@ fn ended(report: &Report) -> String {
         Stopped::Confident => "the gate finds nothing more to ask",
         Stopped::MaxQuestions => "as many questions as are allowed were asked",
         Stopped::NothingLeftToAsk => "nobody can say more",
+        Stopped::Budget => "the tokens that could be spent were spent",
+        Stopped::Interrupted => "it was stopped for now",
     };
     format!("{reason}{left}")
 }

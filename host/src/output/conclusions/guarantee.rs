@@ -3,6 +3,7 @@
 use coin_schemas::calibration::{Calibration, History, NonconformityScore};
 use coin_schemas::report::{Gate, Report, Stopped};
 
+use crate::calibrate::scored_by;
 use crate::output::layout::{count, percent};
 use crate::output::plain_text;
 
@@ -29,7 +30,7 @@ pub(crate) fn guarantee(report: &Report) -> String {
     };
     let beyond = match (report.gate, report.stopped) {
         (Gate::Never, _) | (_, Stopped::Confident) => "",
-        (_, Stopped::MaxQuestions | Stopped::NothingLeftToAsk) => {
+        (_, Stopped::MaxQuestions | Stopped::NothingLeftToAsk | Stopped::Budget | Stopped::Interrupted) => {
             " It does not cover what was still up for a question in the end."
         }
     };
@@ -41,8 +42,10 @@ fn voids(calibration: &Calibration, report: &Report) -> Option<&'static str> {
     if calibration.samples == 0 {
         return Some("the calibration was made from no data. Make one with host calibrate");
     }
-    if calibration.model != report.model {
-        return Some("the thresholds were made for another model, whose scores mean something else");
+    if (calibration.model.as_str(), calibration.scoring)
+        != scored_by(&report.model, report.parameters.scoring)
+    {
+        return Some("the thresholds were made for scores of another kind, which mean something else");
     }
     if calibration.withheld != report.parameters.withheld {
         return Some("the thresholds were made for a model that was told more or less than this one");

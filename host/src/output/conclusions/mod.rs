@@ -21,9 +21,9 @@ pub(crate) fn is_wrong(object: &ObjectReport) -> bool {
     object.truth.as_ref().is_some_and(|truth| *truth != object.owners)
 }
 
-/// Whether nothing is known of the thing, because the model failed and no person said anything.
+/// Whether nothing is known of the thing, because nothing could score it and no person said anything.
 fn is_unknown(object: &ObjectReport) -> bool {
-    object.source == Source::Inferred && object.problem.is_some()
+    object.source == Source::Inferred && object.confidence == 0.0
 }
 
 /// The owners in words.
@@ -52,10 +52,10 @@ pub(crate) fn why(report: &Report, object: &ObjectReport) -> String {
             });
         }
         Source::Inferred => {
-            match &object.problem {
-                Some(problem) => reasons.push(format!("the model failed: {}", plain_text(problem))),
-                None => reasons.push(if object.shared { "inferred, shared" } else { "inferred" }.to_owned()),
+            if !is_unknown(object) {
+                reasons.push(if object.shared { "inferred, shared" } else { "inferred" }.to_owned());
             }
+            reasons.extend(object.problem.as_ref().map(|problem| plain_text(problem).into_owned()));
             reasons.extend(questions.last().map(|question| format!("Q{} left it open", question.step)));
             reasons.extend(not_excluded(report, object));
             if is_unsettled(report, object) {
@@ -69,7 +69,7 @@ pub(crate) fn why(report: &Report, object: &ObjectReport) -> String {
 /// Who else is plausible. A threshold that excludes nobody says nothing of any one thing.
 fn not_excluded(report: &Report, object: &ObjectReport) -> Option<String> {
     let calibration = report.calibration.as_ref()?;
-    if calibration.q_alpha >= 1.0 || object.problem.is_some() {
+    if calibration.q_alpha >= 1.0 || is_unknown(object) {
         return None;
     }
     let others: Vec<_> = object.prediction_set.difference(&object.owners).collect();
@@ -94,5 +94,5 @@ fn is_unsettled(report: &Report, object: &ObjectReport) -> bool {
         (Gate::Paper, Some(calibration)) => object.uncertainty > calibration.q_cp,
         (Gate::Set, Some(_)) => false,
     };
-    doubted || object.problem.is_some()
+    doubted || is_unknown(object)
 }

@@ -1,0 +1,87 @@
+//! One pass of LLM-INFER over the things that need it.
+
+use std::collections::BTreeMap;
+
+use coin::agent::{Event, Inference};
+use coin_schemas::events::LogEvent;
+use coin_schemas::household::ObjectId;
+use coin_schemas::report::Stopped;
+use futures::StreamExt;
+
+use super::{DriveError, Driver};
+use crate::estimation::Estimate;
+
+impl Driver<'_> {
+    /// Has these things scored, several conversations at once. Results are taken in the order of the things, so that
+    /// neither the log nor the report depends on which conversation ends first.
+    pub(super) async fn infer(
+        &mut self,
+        pass: usize,
+        objects: Vec<ObjectId>,
+    ) -> Result<Vec<Event>, DriveError> {
+        self.observer.observe(&LogEvent::InferenceStarted { pass, objects: objects.clone() })?;
+        let mut past: BTreeMap<ObjectId, Inference> = BTreeMap::new();
+        for object in &objects {
+            if let Some(inference) = self.journal.past_inference(object) {
+                self.estimation.remember(object, &inference);
+                past.insert(object.clone(), inference);
+            }
+        }
+        let mut events = Vec::new();
+        let mut waiting = Vec::new();
+        for object in &objects {
+            match past.remove(object) {
+                Some(inference) => events.push(self.note(object, inference)?),
+                None => waiting.push(self.thing(object)?.clone()),
+            }
+        }
+        let estimation = self.estimation;
+        let batches: Vec<Vec<_>> = waiting.chunks(estimation.batch()).map(<[_]>::to_vec).collect();
+        let mut results = futures::stream::iter(batches)
+            .map(|things| async move {
+                let estimates = estimation.infer(&things.iter().collect::<Vec<_>>()).await;
+                (things, estimates)
+            })
+            .buffered(self.concurrency.max(1));
+        let stop = self.stop.clone();
+        loop {
+            let next = tokio::select! {
+                biased;
+                () = stop.cancelled() => {
+                    events.push(Event::Ended { stopped: Stopped::Interrupted });
+                    break;
+                }
+                next = results.next() => next,
+            };
+            let Some((things, estimates)) = next else { break };
+            for (thing, Estimate { called, outcome }) in things.iter().zip(estimates) {
+                for call in called {
+                    self.observer.observe(&LogEvent::ToolCalled {
+                        object_id: thing.id.clone(),
+                        tool: call.tool,
+                        is_error: call.is_error,
+                    })?;
+                }
+                let inference = outcome?;
+                self.journal.inferred(&thing.id, &inference, self.roster)?;
+                events.push(self.note(&thing.id, inference)?);
+            }
+        }
+        Ok(events)
+    }
+
+    fn note(&mut self, object: &ObjectId, inference: Inference) -> Result<Event, DriveError> {
+        if let Some(reason) = &inference.problem {
+            self.observer
+                .observe(&LogEvent::ModelFaltered { object_id: object.clone(), reason: reason.clone() })?;
+        }
+        let (owners, confidence) = inference.distribution.best();
+        self.observer.observe(&LogEvent::ObjectInferred {
+            object_id: object.clone(),
+            scores: self.roster.scores(&inference.scores),
+            owners: self.roster.owners(owners),
+            confidence,
+        })?;
+        Ok(Event::Inferred { object: object.clone(), inference })
+    }
+}

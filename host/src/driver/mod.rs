@@ -1,0 +1,245 @@
+//! The driver: performs what the agent wants done and reports back what happened. All input and output of a run
+//! goes through here; what to do next is decided by `coin::agent` alone.
+
+mod ask;
+mod infer;
+
+use std::collections::BTreeMap;
+
+use coin::agent::{Agent, Effect, Event, ObjectState, UnexpectedEvent};
+use coin::owners::OwnerSet;
+use coin::roster::Roster;
+use coin_schemas::events::LogEvent;
+use coin_schemas::household::{ObjectId, OwnershipBoolean, Source};
+use coin_schemas::model::TaskObject;
+use coin_schemas::report::{QuestionReport, Stopped};
+use coin_schemas::tools::{RecordScores, RecordScoresResult};
+use jiff::civil::DateTime;
+use thiserror::Error;
+use tokio_util::sync::CancellationToken;
+
+use crate::client::{ServerError, ToolServer};
+use crate::estimation::Estimation;
+use crate::journal::{Journal, JournalError};
+use crate::model::ModelError;
+use crate::output::EventLogError;
+use crate::person::{Person, PersonError};
+use crate::steps::{StepError, Steps};
+
+/// Why a run could not be carried through.
+#[derive(Debug, Error)]
+pub enum DriveError {
+    /// The tool server failed.
+    #[error(transparent)]
+    Server(#[from] ServerError),
+    /// The person could not be reached.
+    #[error(transparent)]
+    Person(#[from] PersonError),
+    /// The model cannot be used at all.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A step on which everything after it rests came to nothing.
+    #[error("the model gave nothing to go on with: {reason}")]
+    Step {
+        /// What was wrong.
+        reason: String,
+    },
+    /// The journal cannot be used.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The event log takes no more.
+    #[error(transparent)]
+    Log(#[from] EventLogError),
+    /// The driver broke the agent's protocol, which is a fault of this program.
+    #[error("the run went out of step: {0}; please report this")]
+    OutOfStep(#[from] UnexpectedEvent),
+    /// A value that the run made is not of its type, which is a fault of this program.
+    #[error("the run made a malformed value: {0}; please report this")]
+    Malformed(String),
+}
+
+impl From<StepError> for DriveError {
+    fn from(error: StepError) -> Self {
+        match error {
+            StepError::Server(error) => Self::Server(error),
+            StepError::Model(error) => Self::Model(error),
+            StepError::Unusable { reason } => Self::Step { reason },
+        }
+    }
+}
+
+/// Takes note of what happens in a run.
+pub trait Observer: Send {
+    /// Takes note of one event.
+    fn observe(&mut self, event: &LogEvent) -> Result<(), EventLogError>;
+}
+
+/// Nobody takes note.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Unobserved;
+
+impl Observer for Unobserved {
+    fn observe(&mut self, _event: &LogEvent) -> Result<(), EventLogError> {
+        Ok(())
+    }
+}
+
+/// What a run works with. Its methods borrow it mutably even to read: a person and an observer may be sent to another
+/// thread, but not be shared between two.
+pub struct Driver<'a> {
+    /// The three model-driven steps.
+    pub steps: &'a Steps<'a>,
+    /// What makes the scores.
+    pub estimation: &'a Estimation<'a>,
+    /// The server in which beliefs and answers are stored.
+    pub server: &'a ToolServer,
+    /// The name under which scores are stored.
+    pub model: &'a str,
+    /// The household.
+    pub roster: &'a Roster,
+    /// The things.
+    pub things: &'a BTreeMap<ObjectId, TaskObject>,
+    /// The moment for which the question is put.
+    pub as_of: DateTime,
+    /// How many conversations go on at once.
+    pub concurrency: usize,
+    /// Who answers.
+    pub person: &'a mut dyn Person,
+    /// Who takes note.
+    pub observer: &'a mut dyn Observer,
+    /// What is kept for a run that goes on later, and what an earlier one left.
+    pub journal: Journal,
+    /// Ends the run from outside.
+    pub stop: CancellationToken,
+}
+
+/// What is believed of a thing at one moment of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Standing {
+    /// The owners; empty where somebody outside the household owns it, or nothing is known.
+    pub owners: OwnerSet,
+    /// The probability of the best owner set; 1 where a person named the owners, 0 where nothing is known.
+    pub confidence: f64,
+    /// How the owners are known.
+    pub source: Source,
+}
+
+impl From<&ObjectState> for Standing {
+    fn from(state: &ObjectState) -> Self {
+        let inferred = state.assessment().map_or(0.0, |assessment| assessment.confidence);
+        let (confidence, source) = match state.answer() {
+            Some(_) => (1.0, Source::Answer),
+            None => (inferred, Source::Inferred),
+        };
+        Self { owners: state.owners(), confidence, source }
+    }
+}
+
+/// What came of a run.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The agent, with what it believes of every thing.
+    pub agent: Agent,
+    /// Every question that was put, in order.
+    pub questions: Vec<QuestionReport>,
+    /// What was believed before the first question and after each one.
+    pub history: Vec<BTreeMap<ObjectId, Standing>>,
+    /// Why the run ended.
+    pub stopped: Stopped,
+}
+
+/// A run under way.
+struct Run<'a> {
+    driver: Driver<'a>,
+    agent: Agent,
+    questions: Vec<QuestionReport>,
+    history: Vec<BTreeMap<ObjectId, Standing>>,
+    /// The agent as it was when each question was open, so that an answer can be taken back.
+    open: Vec<Agent>,
+}
+
+impl<'a> Driver<'a> {
+    /// Carries the agent from its start to its end.
+    pub async fn run(self, agent: Agent) -> Result<Outcome, DriveError> {
+        let run = Run { driver: self, agent, questions: Vec::new(), history: Vec::new(), open: Vec::new() };
+        run.to_its_end().await
+    }
+}
+
+impl Run<'_> {
+    async fn to_its_end(mut self) -> Result<Outcome, DriveError> {
+        let mut pass = 0;
+        let mut effects = self.agent.handle(Event::Started)?;
+        loop {
+            let mut events = Vec::new();
+            for effect in effects {
+                match effect {
+                    Effect::Infer { objects } => {
+                        events.extend(self.driver.infer(pass, objects).await?);
+                        pass += 1;
+                    }
+                    Effect::Record { objects } => self.driver.record(&self.agent, &objects).await?,
+                    Effect::Ask { object } => {
+                        let standings = self.driver.standings(&self.agent);
+                        self.history.push(standings);
+                        debug_assert_eq!(self.history.len(), self.questions.len() + 1);
+                        events.push(self.ask(&object).await?);
+                    }
+                    Effect::Finish { stopped } => {
+                        // Where nobody was left to ask, the state before the open question is the last one.
+                        if self.history.len() == self.questions.len() {
+                            let standings = self.driver.standings(&self.agent);
+                            self.history.push(standings);
+                        }
+                        let Self { agent, questions, history, .. } = self;
+                        return Ok(Outcome { agent, questions, history, stopped });
+                    }
+                }
+            }
+            effects = Vec::new();
+            for event in events {
+                effects.extend(self.agent.handle(event)?);
+            }
+        }
+    }
+}
+
+impl Driver<'_> {
+    fn ownership(&self, owners: OwnerSet) -> OwnershipBoolean {
+        self.roster.indices().map(|user| (self.roster.name(user).clone(), owners.contains(user))).collect()
+    }
+
+    fn standings(&self, agent: &Agent) -> BTreeMap<ObjectId, Standing> {
+        let unknown = ObjectState::default();
+        self.things
+            .keys()
+            .map(|object| (object.clone(), Standing::from(agent.object(object).unwrap_or(&unknown))))
+            .collect()
+    }
+
+    fn thing(&self, object: &ObjectId) -> Result<&TaskObject, DriveError> {
+        self.things
+            .get(object)
+            .ok_or_else(|| DriveError::Malformed(format!("thing {object} is not in the episode")))
+    }
+
+    async fn record(&mut self, agent: &Agent, objects: &[ObjectId]) -> Result<(), DriveError> {
+        for object in objects {
+            let Some(state) = agent.object(object) else { continue };
+            let (Some(scores), Some(distribution)) = (state.scores(), state.distribution()) else { continue };
+            let arguments = RecordScores {
+                object_id: object.to_string(),
+                scores: self
+                    .roster
+                    .scores(scores)
+                    .into_iter()
+                    .map(|(name, score)| (name.to_string(), score.value()))
+                    .collect(),
+                owner_sets: Some(distribution.to_named(self.roster)),
+                model: Some(self.model.to_owned()),
+            };
+            let _: RecordScoresResult = self.server.call("record_scores", &arguments).await?;
+        }
+        Ok(())
+    }
+}

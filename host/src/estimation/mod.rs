@@ -1,0 +1,375 @@
+//! How the scores of things are made: by the model alone, by the evidence model alone, or as one posterior of both.
+//!
+//! A thing whose context did not change is not judged anew by a language model. Where the model fails on a thing, the
+//! evidence model stands in, and the belief says so.
+
+mod memory;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+
+use coin::agent::{Inference, Parts};
+use coin::common_sense::expect;
+use coin::evidence::{EvidenceParameters, Opinion};
+use coin::owners::OwnerSetDistribution;
+use coin::roster::Roster;
+use coin_schemas::household::{ObjectId, Score};
+use coin_schemas::model::{GivenContext, Task, TaskObject, ThingInContext};
+use coin_schemas::report::{ContextSource, Estimator, Reinference, Withheld};
+use jiff::civil::DateTime;
+
+use crate::client::ServerError;
+use crate::evidence::{context, judge, related, surroundings};
+use crate::model::ModelError;
+use crate::steps::{CalledTool, InferStep, Scored, StepError, Steps};
+use memory::{Basis, Memory};
+
+/// How many captions of each person a model finds in the prompt, as many as it is shown by default when it asks.
+const EXAMPLES_IN_THE_PROMPT: u32 = 5;
+
+/// The evidence model counts sessions and reads no captions.
+const NO_EXAMPLES: u32 = 0;
+
+/// What came of one thing.
+#[derive(Debug)]
+pub struct Estimate {
+    /// The tools that the model called for it.
+    pub called: Vec<CalledTool>,
+    /// What is believed of it; an error where the run has to end.
+    pub outcome: Result<Inference, StepError>,
+}
+
+/// Makes the scores of a run.
+pub struct Estimation<'a> {
+    steps: &'a Steps<'a>,
+    withheld: std::collections::BTreeSet<Withheld>,
+    /// The household as the evidence model is told of it.
+    told: Roster,
+    as_of: DateTime,
+    parameters: EvidenceParameters,
+    memory: Memory,
+}
+
+impl<'a> Estimation<'a> {
+    /// Scores of a run in which these steps are taken, as of this moment. The paper's scheme of inferring every thing
+    /// again asks the model every time, so that its price can be told.
+    ///
+    /// # Errors
+    /// If the household cannot be told without what is withheld, which is a fault of this program.
+    pub fn new(
+        steps: &'a Steps<'a>,
+        withheld: std::collections::BTreeSet<Withheld>,
+        as_of: DateTime,
+        reinference: Reinference,
+    ) -> Result<Self, coin::roster::RosterError> {
+        Ok(Self {
+            told: Roster::new(steps.household())?,
+            steps,
+            withheld,
+            as_of,
+            parameters: EvidenceParameters::default(),
+            memory: Memory::of(reinference),
+        })
+    }
+
+    /// How many things are judged in one conversation.
+    pub fn batch(&self) -> usize {
+        self.steps.scoring().batch.max(1)
+    }
+
+    /// Takes over what an earlier part of the run concluded, so that the model is not asked for it again.
+    pub fn remember(&self, object: &ObjectId, inference: &Inference) {
+        if let Some(Parts { model: Some(scores), .. }) = &inference.parts {
+            self.memory.keep_opinion(object, scores);
+        }
+    }
+
+    /// Scores these things, of which there are at most [`Self::batch`], in the order given.
+    pub async fn infer(&self, things: &[&TaskObject]) -> Vec<Estimate> {
+        match (self.steps.scoring().estimator, self.steps.scoring().context) {
+            (Estimator::Evidence, _) => {
+                let mut estimates = Vec::with_capacity(things.len());
+                for thing in things {
+                    estimates.push(self.by_evidence(thing).await.into());
+                }
+                estimates
+            }
+            (Estimator::Model, ContextSource::Tools) => {
+                let mut estimates = Vec::with_capacity(things.len());
+                for thing in things {
+                    estimates.push(self.by_model_with_tools(thing).await);
+                }
+                estimates
+            }
+            (Estimator::Model, ContextSource::Given) => self.by_model_with_context(things).await,
+            (Estimator::Fused, _) => self.fused(things).await,
+        }
+    }
+
+    /// The evidence model by itself, with the file of classes for common sense.
+    async fn by_evidence(&self, thing: &TaskObject) -> Result<Inference, StepError> {
+        let context = self.context(thing, NO_EXAMPLES).await?;
+        let distribution = self.weigh(thing, &context, None)?;
+        Ok(self.inference(distribution, &context))
+    }
+
+    async fn context(&self, thing: &TaskObject, examples: u32) -> Result<GivenContext, ServerError> {
+        context(self.steps.server(), &thing.id, self.as_of, &self.withheld, examples).await
+    }
+
+    /// The posterior of the evidence, with a model's common sense in place of the file's where there is one.
+    fn weigh(
+        &self,
+        thing: &TaskObject,
+        context: &GivenContext,
+        opinion: Option<&[Score]>,
+    ) -> Result<OwnerSetDistribution, StepError> {
+        let expectation = expect(thing.class.as_str(), &self.told);
+        let opinion = match opinion {
+            Some(scores) => Opinion::OfModel(scores),
+            None => Opinion::from(expectation.as_ref()),
+        };
+        judge(&self.told, &thing.class, context, opinion, &self.parameters)
+            .map_err(|error| StepError::Unusable { reason: error.to_string() })
+    }
+
+    fn inference(&self, distribution: OwnerSetDistribution, context: &GivenContext) -> Inference {
+        Inference {
+            scores: distribution.marginals(self.told.len()),
+            distribution,
+            related: related(context),
+            ..Inference::default()
+        }
+    }
+
+    fn task(&self, thing: &TaskObject, context: Option<GivenContext>) -> Task {
+        Task::InferOwnership {
+            household: self.steps.household().clone(),
+            as_of: self.as_of,
+            object: thing.clone(),
+            context,
+        }
+    }
+
+    /// The paper's LLM-INFER: the model fetches the context and scores alone.
+    async fn by_model_with_tools(&self, thing: &TaskObject) -> Estimate {
+        match self.unchanged(thing).await {
+            Ok(Some(inference)) => return Ok(inference).into(),
+            Ok(None) => {}
+            Err(error) => return Err(error.into()).into(),
+        }
+        let InferStep { called, seen, related, outcome } = self.steps.infer(&self.task(thing, None)).await;
+        let outcome = match outcome {
+            Ok(scored) => {
+                let inference = Inference { related, ..by_model_alone(scored) };
+                self.memory.keep(&thing.id, Basis::Results(seen), &inference);
+                Ok(inference)
+            }
+            Err(error) => self.stand_in(thing, error).await,
+        };
+        Estimate { called, outcome }
+    }
+
+    /// What was concluded before, where every tool still gives the results that it was concluded from.
+    async fn unchanged(&self, thing: &TaskObject) -> Result<Option<Inference>, ServerError> {
+        let Some((Basis::Results(seen), inference)) = self.memory.of_thing(&thing.id) else {
+            return Ok(None);
+        };
+        for result in seen {
+            let crate::model::ToolArguments::Object(arguments) = result.call.arguments else {
+                return Ok(None);
+            };
+            let now = self.steps.server().call_raw(&result.call.tool, arguments).await?;
+            if now.is_error || now.text != result.text {
+                return Ok(None);
+            }
+        }
+        Ok(Some(inference))
+    }
+
+    /// The model finds the context in the prompt and scores alone.
+    async fn by_model_with_context(&self, things: &[&TaskObject]) -> Vec<Estimate> {
+        let mut known = BTreeMap::new();
+        let mut asked = Vec::new();
+        for thing in things {
+            let context = match self.context(thing, EXAMPLES_IN_THE_PROMPT).await {
+                Ok(context) => context,
+                Err(error) => {
+                    known.insert(thing.id.clone(), Err(error.into()));
+                    continue;
+                }
+            };
+            match self.memory.of_thing(&thing.id) {
+                Some((Basis::Context(before), inference)) if before == context => {
+                    known.insert(thing.id.clone(), Ok(inference));
+                }
+                _ => asked.push(ThingInContext { object: (*thing).clone(), context }),
+            }
+        }
+        let mut scored = self.ask_about(&asked).await;
+        for ThingInContext { object, context } in asked {
+            let outcome = match scored.remove(&object.id) {
+                Some(Ok(scored)) => {
+                    let inference = Inference { related: related(&context), ..by_model_alone(scored) };
+                    self.memory.keep(&object.id, Basis::Context(context), &inference);
+                    Ok(inference)
+                }
+                Some(Err(error)) => self.stand_in(&object, error).await,
+                None => self.stand_in(&object, not_asked()).await,
+            };
+            known.insert(object.id, outcome);
+        }
+        in_order(things, known, BTreeMap::new())
+    }
+
+    /// One conversation about these things. An error concerns all of them.
+    async fn ask_about(&self, things: &[ThingInContext]) -> BTreeMap<ObjectId, Result<Scored, StepError>> {
+        match things {
+            [] => BTreeMap::new(),
+            [ThingInContext { object, context }] => {
+                let step = self.steps.infer(&self.task(object, Some(context.clone()))).await;
+                [(object.id.clone(), step.outcome)].into()
+            }
+            _ => {
+                let ids: Vec<ObjectId> = things.iter().map(|thing| thing.object.id.clone()).collect();
+                let task = Task::InferSeveral {
+                    household: self.steps.household().clone(),
+                    as_of: self.as_of,
+                    things: things.to_vec(),
+                };
+                match self.steps.infer_several(&task, &ids).await.outcome {
+                    Ok(scored) => scored.into_iter().map(|(id, scored)| (id, Ok(scored))).collect(),
+                    Err(error) => for_all(ids, error),
+                }
+            }
+        }
+    }
+
+    /// The model's common sense, heard once for each thing, and the evidence as it is now, in one posterior.
+    async fn fused(&self, things: &[&TaskObject]) -> Vec<Estimate> {
+        let unheard: Vec<&TaskObject> =
+            things.iter().copied().filter(|thing| self.memory.opinion(&thing.id).is_none()).collect();
+        let (mut failures, mut called) = (BTreeMap::new(), BTreeMap::new());
+        let mut remarks: BTreeMap<ObjectId, String> = BTreeMap::new();
+        for (id, (tools, outcome)) in self.hear(&unheard).await {
+            called.insert(id.clone(), tools);
+            match outcome {
+                Ok(Scored { scores, remark, .. }) => {
+                    self.memory.keep_opinion(&id, &scores);
+                    remarks.extend(remark.map(|remark| (id, remark)));
+                }
+                Err(error) => {
+                    failures.insert(id, error);
+                }
+            }
+        }
+        let mut known = BTreeMap::new();
+        for thing in things {
+            let outcome = match failures.remove(&thing.id) {
+                Some(error) => self.stand_in(thing, error).await,
+                None => self.fuse(thing, remarks.remove(&thing.id)).await,
+            };
+            known.insert(thing.id.clone(), outcome);
+        }
+        in_order(things, known, called)
+    }
+
+    /// Has the model say what common sense says of these things.
+    async fn hear(
+        &self,
+        things: &[&TaskObject],
+    ) -> BTreeMap<ObjectId, (Vec<CalledTool>, Result<Scored, StepError>)> {
+        let mut heard = BTreeMap::new();
+        if self.steps.scoring().context == ContextSource::Tools {
+            for thing in things {
+                let step = self.steps.infer(&self.task(thing, None)).await;
+                heard.insert(thing.id.clone(), (step.called, step.outcome));
+            }
+            return heard;
+        }
+        let mut asked = Vec::new();
+        for thing in things {
+            match surroundings(self.steps.server(), &thing.id).await {
+                Ok(context) => asked.push(ThingInContext { object: (*thing).clone(), context }),
+                Err(error) => {
+                    heard.insert(thing.id.clone(), (Vec::new(), Err(error.into())));
+                }
+            }
+        }
+        let scored = self.ask_about(&asked).await;
+        heard.extend(scored.into_iter().map(|(id, outcome)| (id, (Vec::new(), outcome))));
+        heard
+    }
+
+    async fn fuse(&self, thing: &TaskObject, problem: Option<String>) -> Result<Inference, StepError> {
+        let opinion = self.memory.opinion(&thing.id);
+        let context = self.context(thing, NO_EXAMPLES).await?;
+        let fused = self.weigh(thing, &context, opinion.as_deref())?;
+        let evidence = judge(&self.told, &thing.class, &context, Opinion::None, &self.parameters)
+            .map_err(|error| StepError::Unusable { reason: error.to_string() })?;
+        let parts = Parts { model: opinion, evidence: evidence.marginals(self.told.len()) };
+        Ok(Inference { parts: Some(parts), problem, ..self.inference(fused, &context) })
+    }
+
+    /// The evidence model speaks where the model failed, unless nothing can go on.
+    async fn stand_in(&self, thing: &TaskObject, error: StepError) -> Result<Inference, StepError> {
+        if error.ends_run() {
+            return Err(error);
+        }
+        let by_evidence = self.by_evidence(thing).await?;
+        let problem = match error {
+            StepError::Model(ModelError::OutOfBudget { .. }) => {
+                format!("{error}; judged by the evidence alone")
+            }
+            error => format!("the model failed: {error}; judged by the evidence alone"),
+        };
+        let parts = match self.steps.scoring().estimator {
+            Estimator::Fused => Some(Parts { model: None, evidence: by_evidence.scores.clone() }),
+            Estimator::Model | Estimator::Evidence => None,
+        };
+        Ok(Inference { parts, problem: Some(problem), ..by_evidence })
+    }
+}
+
+impl From<Result<Inference, StepError>> for Estimate {
+    fn from(outcome: Result<Inference, StepError>) -> Self {
+        Self { called: Vec::new(), outcome }
+    }
+}
+
+fn by_model_alone(scored: Scored) -> Inference {
+    let Scored { scores, distribution, remark } = scored;
+    Inference { scores, distribution, problem: remark, ..Inference::default() }
+}
+
+fn not_asked() -> StepError {
+    StepError::Unusable { reason: "the model said nothing of this thing".to_owned() }
+}
+
+/// The same error for each of several things.
+fn for_all<T>(things: Vec<ObjectId>, error: StepError) -> BTreeMap<ObjectId, Result<T, StepError>> {
+    let again = |error: &StepError| match error {
+        StepError::Model(error) => StepError::Model(error.clone()),
+        error => StepError::Unusable { reason: error.to_string() },
+    };
+    let mut errors: BTreeMap<ObjectId, Result<T, StepError>> =
+        things.iter().skip(1).map(|thing| (thing.clone(), Err(again(&error)))).collect();
+    // The first keeps the error itself, so that a server that is gone ends the run.
+    errors.extend(things.into_iter().next().map(|thing| (thing, Err(error))));
+    errors
+}
+
+fn in_order(
+    things: &[&TaskObject],
+    mut outcomes: BTreeMap<ObjectId, Result<Inference, StepError>>,
+    mut called: BTreeMap<ObjectId, Vec<CalledTool>>,
+) -> Vec<Estimate> {
+    things
+        .iter()
+        .map(|thing| Estimate {
+            called: called.remove(&thing.id).unwrap_or_default(),
+            outcome: outcomes.remove(&thing.id).unwrap_or_else(|| Err(not_asked())),
+        })
+        .collect()
+}
