@@ -18,6 +18,7 @@ pub mod pages;
 pub mod parallel;
 pub mod person;
 pub mod prompts;
+pub mod reply;
 pub mod report;
 pub mod run;
 pub mod steps;
