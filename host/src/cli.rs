@@ -7,11 +7,12 @@ use coin::calibration::{EMBEDDED_MODEL, Levels};
 use coin::conformal::{InvalidLevel, Level};
 use coin_schemas::calibration::{History, NonconformityScore};
 use coin_schemas::experiment::Method;
-use coin_schemas::report::{Gate, Reinference, Withheld};
+use coin_schemas::report::{ContextSource, Estimator, Gate, Reinference, Scoring, Withheld};
 
 use crate::client::ServerAddress;
 use crate::generate::{GenerateArguments, HomerArguments, Protocol};
-use crate::run::Answers;
+use crate::model::choice::ModelChoice;
+use crate::run::{Answers, CONCURRENCY, default_scoring};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -21,6 +22,10 @@ Examples:
       A page with a plan of the home; it opens from disk.
   host --episode HOME --answers terminal --db home.db
       Answer yourself, and keep what was learnt.
+  host --episode HOME --db home.db --answers terminal --resume
+      Go on where you stopped.
+  OPENAI_API_KEY=… host --episode HOME --model openai:gpt-4o-2024-11-20 --db home.db
+      With a language model; OPENAI_BASE_URL names another server, such as Ollama's.
   host --episode HOME --json > report.json
       The report, and it alone, on standard output.
   host --episode HOME --server 'coin-server --db home.db'
@@ -85,9 +90,9 @@ pub struct ExperimentArguments {
     /// Write results.json, tables.md, figures and index.html to this folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// The model that scores, words and reads
-    #[arg(long, value_name = "NAME", default_value = EMBEDDED_MODEL)]
-    pub model: ModelName,
+    /// Which model, and how it is used.
+    #[command(flatten)]
+    pub model: ModelArguments,
     /// Say nothing while working
     #[arg(long)]
     pub quiet: bool,
@@ -158,12 +163,18 @@ pub struct RunArguments {
     /// Keep the database in this file; answers in it are not asked for again [default: in memory]
     #[arg(long, value_name = "FILE")]
     pub db: Option<PathBuf>,
+    /// Go on where the last run with this --db ended, also after a crash: nothing is asked or paid for twice
+    #[arg(long, requires = "db")]
+    pub resume: bool,
     /// Where the tool server is: in-process, a command, or a URL
     #[arg(long, value_name = "in-process|CMD|URL", default_value = "in-process")]
     pub server: ServerAddress,
-    /// The model that scores, words and reads
-    #[arg(long, value_name = "NAME", default_value = EMBEDDED_MODEL)]
-    pub model: ModelName,
+    /// Which model, and how it is used.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// How the scores are made.
+    #[command(flatten)]
+    pub scoring: ScoringArguments,
     /// Which rule decides what is asked
     #[arg(long, value_enum, default_value_t = GateArgument::Risk)]
     pub gate: GateArgument,
@@ -234,9 +245,12 @@ pub struct CalibrateArguments {
     /// Keep something from the model; the thresholds are for runs that keep the same from it
     #[arg(long, value_enum, value_name = "WHAT")]
     pub without: Vec<WithheldArgument>,
-    /// The model to calibrate
-    #[arg(long, value_name = "NAME", default_value = EMBEDDED_MODEL)]
-    pub model: ModelName,
+    /// Which model, and how it is used.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// How the scores are made.
+    #[command(flatten)]
+    pub scoring: ScoringArguments,
     /// Say nothing while working
     #[arg(long)]
     pub quiet: bool,
@@ -272,20 +286,111 @@ fn level(text: &str) -> Result<Level, String> {
     Level::new(value).map_err(|error: InvalidLevel| error.to_string())
 }
 
-/// A model that this version can drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ModelName {
-    /// The evidence model, which needs no service.
-    Embedded,
+/// Which model runs, and how it is used.
+#[derive(Debug, Args)]
+pub struct ModelArguments {
+    /// The model that scores, words and reads: embedded, openai:NAME (any server that speaks Chat Completions, at
+    /// OPENAI_BASE_URL), anthropic:NAME, or replay:FILE
+    #[arg(long, value_name = "MODEL", default_value = EMBEDDED_MODEL)]
+    pub model: ModelChoice,
+    /// How many conversations go on at once; the result does not depend on it
+    #[arg(long, value_name = "N", default_value_t = CONCURRENCY, value_parser = at_least_one)]
+    pub concurrency: usize,
+    /// How long a provider may take for one request, in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..=3600))]
+    pub timeout: u64,
+    /// Spend at most so many tokens; what is left then is judged without the model [default: no limit]
+    #[arg(long, value_name = "TOKENS")]
+    pub budget: Option<u64>,
+    /// Keep the replies of a language model in this file and take them from there, also after a crash [default: beside
+    /// --db, where that is given]
+    #[arg(long, value_name = "FILE")]
+    pub cache: Option<PathBuf>,
+    /// Write every exchange with the model to this file, to run it again with --model replay:FILE
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
 }
 
-impl std::str::FromStr for ModelName {
-    type Err = String;
+/// How the scores of things are made.
+#[derive(Debug, Args)]
+pub struct ScoringArguments {
+    /// What the scores are made from [default: fused with a language model, model with the embedded one]
+    #[arg(long, value_enum, value_name = "ESTIMATOR")]
+    pub estimator: Option<EstimatorArgument>,
+    /// How the model comes by what it judges from
+    #[arg(long, value_enum, default_value_t = ContextArgument::Tools)]
+    pub context: ContextArgument,
+    /// How many things the model scores in one call; more than one needs --context given
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = at_least_one)]
+    pub batch: usize,
+}
 
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
-            EMBEDDED_MODEL => Ok(Self::Embedded),
-            _ => Err(format!("this version drives the model {EMBEDDED_MODEL:?} and no other")),
+impl ScoringArguments {
+    /// How scores are made with a model of this name.
+    ///
+    /// # Errors
+    /// If the arguments do not go together; the text says what does.
+    pub fn scoring(&self, model: &str) -> Result<Scoring, String> {
+        let estimator = self.estimator.map_or(default_scoring(model).estimator, Into::into);
+        let scoring = Scoring { estimator, context: self.context.into(), batch: self.batch };
+        if model == EMBEDDED_MODEL && estimator == Estimator::Fused {
+            return Err(format!(
+                "--estimator fused joins a language model with the evidence model, and {EMBEDDED_MODEL} is the evidence \
+                 model; leave it out or name a language model with --model"
+            ));
+        }
+        if self.batch > 1 && scoring.context != ContextSource::Given {
+            return Err(format!(
+                "--batch {} scores several things from what stands in one prompt; add --context given",
+                self.batch
+            ));
+        }
+        Ok(scoring)
+    }
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("give a whole number from 1".to_owned()),
+        Ok(number) => Ok(number),
+    }
+}
+
+/// What scores are made from, as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorArgument {
+    /// The model alone, which sees the whole context (the paper's scheme)
+    Model,
+    /// The evidence model alone; the language model words questions and reads answers
+    Evidence,
+    /// One posterior: the model's common sense about class, people and place, and the evidence of the usage
+    Fused,
+}
+
+impl From<EstimatorArgument> for Estimator {
+    fn from(argument: EstimatorArgument) -> Self {
+        match argument {
+            EstimatorArgument::Model => Self::Model,
+            EstimatorArgument::Evidence => Self::Evidence,
+            EstimatorArgument::Fused => Self::Fused,
+        }
+    }
+}
+
+/// How a model comes by its context, as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ContextArgument {
+    /// It calls tools
+    Tools,
+    /// It finds everything in the prompt, which takes one call a thing
+    Given,
+}
+
+impl From<ContextArgument> for ContextSource {
+    fn from(argument: ContextArgument) -> Self {
+        match argument {
+            ContextArgument::Tools => Self::Tools,
+            ContextArgument::Given => Self::Given,
         }
     }
 }

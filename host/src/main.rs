@@ -4,24 +4,28 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 use coin::calibration::{households_wanted, too_few_samples};
 use coin_host::calibrate::{CalibrateSettings, calibrate_on, read_calibration};
 use coin_host::cli::{
     CalibrateArguments, Command, CommandLine, ExperimentArguments, GenerateCommand, MethodArgument,
-    ModelName, RunArguments, default_levels,
+    ModelArguments, RunArguments, default_levels,
 };
 use coin_host::experiment::{CoverageHomes, ExperimentSettings, check_folder, write};
 use coin_host::generate;
+use coin_host::journal::Beginning;
 use coin_host::model::ChatModel;
-use coin_host::model::embedded::EmbeddedModel;
+use coin_host::model::choice::{self, ModelSettings};
 use coin_host::observer::Chronicle;
 use coin_host::output::{EventLog, Printer, Progress, ResultFormat};
 use coin_host::pages::episode::{EpisodePage, episode as page};
 use coin_host::person::PersonKind;
 use coin_host::run::{Answers, EvidenceKept, ForeignCalibration, RunSettings, run_episode};
+use coin_schemas::report::Stopped;
 use tempfile::NamedTempFile;
+use tokio_util::sync::CancellationToken;
 use tracing_subscriber::EnvFilter;
 
 /// Why the program ends without its result.
@@ -77,10 +81,48 @@ fn runtime() -> Result<tokio::runtime::Runtime, Failure> {
         .map_err(|error| Failure::Failed(format!("the runtime does not start: {error}")))
 }
 
-fn model(name: ModelName) -> Arc<dyn ChatModel> {
-    match name {
-        ModelName::Embedded => Arc::new(EmbeddedModel::default()),
-    }
+/// What is added to the name of the database where replies are kept beside it.
+const CACHE_SUFFIX: &str = ".replies.jsonl";
+
+fn model(arguments: &ModelArguments, seed: u64, db: Option<&Path>) -> Result<Arc<dyn ChatModel>, Failure> {
+    let beside_db = db.map(|db| {
+        let mut name = db.as_os_str().to_owned();
+        name.push(CACHE_SUFFIX);
+        PathBuf::from(name)
+    });
+    let settings = ModelSettings {
+        seed,
+        timeout: Duration::from_secs(arguments.timeout),
+        budget: arguments.budget,
+        cache: arguments.cache.as_deref().or(beside_db.as_deref()),
+        record: arguments.record.as_deref(),
+    };
+    choice::ready(&arguments.model, &settings).map_err(|error| Failure::Failed(error.to_string()))
+}
+
+/// The status of a program that Ctrl-C ended.
+const INTERRUPTED: i32 = 130;
+
+#[expect(clippy::exit, reason = "who presses Ctrl-C twice wants no more tidying up")]
+fn leave_at_once() {
+    std::process::exit(INTERRUPTED);
+}
+
+/// A token that Ctrl-C cancels. A second Ctrl-C ends the program at once.
+fn until_interrupted(printer: Printer) -> CancellationToken {
+    let stop = CancellationToken::new();
+    let cancelled = stop.clone();
+    tokio::spawn(async move {
+        if tokio::signal::ctrl_c().await.is_err() {
+            return;
+        }
+        printer.progress("\nStopping; what was learnt is kept. Once more ends it at once.");
+        cancelled.cancel();
+        if tokio::signal::ctrl_c().await.is_ok() {
+            leave_at_once();
+        }
+    });
+    stop
 }
 
 fn run(arguments: &RunArguments) -> Result<(), Failure> {
@@ -98,6 +140,8 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
     };
     let report_file = arguments.report.as_deref().map(OutputFile::create).transpose()?;
     let page_file = arguments.html.as_deref().map(OutputFile::create).transpose()?;
+    let model = model(&arguments.model, arguments.seed, arguments.db.as_deref())?;
+    let scoring = arguments.scoring.scoring(model.name()).map_err(Failure::Refused)?;
     let settings = RunSettings {
         episode,
         db: arguments.db.clone(),
@@ -113,6 +157,9 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
             true => ForeignCalibration::Used,
             false => ForeignCalibration::Refused,
         },
+        scoring: Some(scoring),
+        concurrency: arguments.model.concurrency,
+        beginning: if arguments.resume { Beginning::WhereItEnded } else { Beginning::Anew },
         evidence: if page_file.is_some() { EvidenceKept::All } else { EvidenceKept::None },
     };
     let format = if arguments.json { ResultFormat::Json } else { ResultFormat::Text };
@@ -124,9 +171,12 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
         Answers::Scripted(_) => PersonKind::Scripted,
     };
     let mut chronicle = Chronicle::new(log, printer.narration(person));
-    let model = model(arguments.model);
-    let result = runtime()?
-        .block_on(run_episode(&settings, model.as_ref(), &mut chronicle))
+    let (result, was_interrupted) = runtime()?.block_on(async {
+        let stop = until_interrupted(printer);
+        let result = run_episode(&settings, model.as_ref(), &mut chronicle, stop.clone()).await;
+        (result, stop.is_cancelled())
+    });
+    let result = result
         .map_err(|error| failure(error.is_refusal(), &error))?;
     if let Some(file) = report_file {
         file.write_json(&result.report)?;
@@ -141,21 +191,39 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
     printer
         .report(&result.report, &result.episode.users)
-        .map_err(|error| Failure::Failed(format!("standard output takes no more: {error}")))
+        .map_err(|error| Failure::Failed(format!("standard output takes no more: {error}")))?;
+    let next_step = match (result.report.stopped, &arguments.db) {
+        (Stopped::Interrupted | Stopped::Budget, Some(db)) => {
+            format!("go on with the same command and --resume; what was learnt is in {}", db.display())
+        }
+        (Stopped::Interrupted | Stopped::Budget, None) => {
+            "with --db FILE a run can go on where it ended, and nothing is lost".to_owned()
+        }
+        (Stopped::Confident | Stopped::MaxQuestions | Stopped::NothingLeftToAsk, _) => return Ok(()),
+    };
+    match was_interrupted {
+        true => Err(Failure::Failed(format!("the run was interrupted; {next_step}"))),
+        false => {
+            printer.progress(&format!("This run ended early; {next_step}."));
+            Ok(())
+        }
+    }
 }
 
 fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
     let out = OutputFile::create(&arguments.out)?;
     let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
     let printer = Printer::new(ResultFormat::Text, progress);
+    let model = model(&arguments.model, 0, None)?;
     let settings = CalibrateSettings {
         episodes: arguments.episode.clone(),
         levels: arguments.levels(),
         score: arguments.score.into(),
         history: arguments.history.into(),
         withheld: arguments.without.iter().copied().map(Into::into).collect(),
+        scoring: arguments.scoring.scoring(model.name()).map_err(Failure::Refused)?,
+        concurrency: arguments.model.concurrency,
     };
-    let model = model(arguments.model);
     let bar = printer.bar(settings.episodes.len(), "homes scored");
     let calibration = runtime()?
         .block_on(calibrate_on(&settings, &model, || bar.inc(1)))
@@ -213,8 +281,9 @@ fn experiment(arguments: &ExperimentArguments) -> Result<(), Failure> {
     let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
     let printer = Printer::new(ResultFormat::Text, progress);
     let mut bars = printer.bars();
+    let model = model(&arguments.model, arguments.seed, None)?;
     let results = runtime()?
-        .block_on(coin_host::experiment::run(&settings, model(arguments.model), &mut bars))
+        .block_on(coin_host::experiment::run(&settings, model, &mut bars))
         .map_err(|error| failure(error.is_refusal(), &error))?;
     write(&results, &arguments.out).map_err(|error| failure(false, &error))?;
     printer.progress(&format!("Open {} in a browser.", arguments.out.join("index.html").display()));

@@ -3,8 +3,11 @@
 //! The embedded model stands behind it exactly as a language model does, so that everything above it, from the
 //! tool-calling loop to the report, is the same for both.
 
-pub mod counted;
+pub mod choice;
 pub mod embedded;
+pub mod metered;
+pub mod provider;
+pub mod tape;
 
 use async_trait::async_trait;
 
