@@ -5,6 +5,7 @@
 
 pub mod counted;
 pub mod embedded;
+pub mod provider;
 
 use async_trait::async_trait;
 
