@@ -8,6 +8,7 @@ mod answer;
 mod binaries;
 mod episode;
 mod home;
+pub mod provider;
 mod repository;
 mod schema;
 mod server;
