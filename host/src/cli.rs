@@ -12,6 +12,7 @@ use coin_schemas::report::{ContextSource, Estimator, Gate, Reinference, Scoring,
 use crate::client::ServerAddress;
 use crate::generate::{GenerateArguments, HomerArguments, Protocol};
 use crate::model::choice::ModelChoice;
+use crate::model::metered::TokenBudget;
 use crate::run::{Answers, CONCURRENCY, default_scoring};
 
 const EXAMPLES: &str = "\
@@ -301,7 +302,7 @@ pub struct ModelArguments {
     pub timeout: u64,
     /// Spend at most so many tokens; what is left then is judged without the model [default: no limit]
     #[arg(long, value_name = "TOKENS")]
-    pub budget: Option<u64>,
+    pub budget: Option<TokenBudget>,
     /// Keep the replies of a language model in this file and take them from there, also after a crash [default: beside
     /// --db, where that is given]
     #[arg(long, value_name = "FILE")]

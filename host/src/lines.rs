@@ -6,7 +6,7 @@ use serde_json::Value;
 const BROKEN_LEVELS: usize = 2;
 
 /// Writes JSON with every slot on a line and every item of a slot or a list on a line of its own.
-pub fn json_in_lines(value: &Value) -> String {
+pub(crate) fn json_in_lines(value: &Value) -> String {
     let mut text = String::new();
     write(&mut text, value, 0);
     text
@@ -56,7 +56,20 @@ mod tests {
             "object": {"id": "3", "position": [1.0, 2.0, 3.0]},
             "context": {"nearby_objects": [{"id": "1", "name": "mug"}, {"id": "2", "name": "pen"}], "none": []},
         });
-        insta::assert_snapshot!(json_in_lines(&task), @"");
+        insta::assert_snapshot!(json_in_lines(&task), @r#"
+        {"task":"infer",
+        "household":{
+        "Bob":{"role":"father"},
+        "Mary":{}},
+        "object":{
+        "id":"3",
+        "position":[1.0,2.0,3.0]},
+        "context":{
+        "nearby_objects":[
+        {"id":"1","name":"mug"},
+        {"id":"2","name":"pen"}],
+        "none":[]}}
+        "#);
     }
 
     fn any_json() -> impl Strategy<Value = Value> {

@@ -176,8 +176,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
         let result = run_episode(&settings, model.as_ref(), &mut chronicle, stop.clone()).await;
         (result, stop.is_cancelled())
     });
-    let result = result
-        .map_err(|error| failure(error.is_refusal(), &error))?;
+    let result = result.map_err(|error| failure(error.is_refusal(), &error))?;
     if let Some(file) = report_file {
         file.write_json(&result.report)?;
     }

@@ -251,7 +251,7 @@ impl Driver<'_> {
     /// A question that a model cannot word is worded without one, so that a person can still be asked; `None` where no
     /// more tokens may be spent.
     async fn word_question(
-        &self,
+        &mut self,
         thing: &TaskObject,
         scores: &[Score],
         times_asked: u32,
@@ -283,7 +283,7 @@ impl Driver<'_> {
     /// An answer that a model cannot read is read without one; what neither understands stays unresolved. What a person
     /// has said is read at once where the run is to stop.
     async fn read_answer(
-        &self,
+        &mut self,
         question: &str,
         answer: &str,
         answered_by: Option<&UserName>,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use coin::baselines::actowl::{ActOwl, Priors, Sampling, Things, visual_words};
 use coin::owners::OwnerSet;
-use coin_schemas::household::{ClassLabel, ObjectId, Score};
+use coin_schemas::household::{ClassLabel, ObjectId, Score, UserName};
 use coin_schemas::model::{Task, TaskObject};
 use coin_schemas::report::Scoring;
 use rand::SeedableRng;
@@ -17,7 +17,7 @@ use crate::client::ServerAddress;
 use crate::driver::DriveError;
 use crate::home::Home;
 use crate::model::ChatModel;
-use crate::person::{Person, PutQuestion, Response, SimulatedPerson};
+use crate::person::{Candidate, Person, PutQuestion, Response, SimulatedPerson};
 use crate::run::RunError;
 use crate::steps::Steps;
 
@@ -111,8 +111,17 @@ async fn ask(
         })
         .await
         .map_err(DriveError::from)?;
-    let candidates: Vec<_> = home.roster.names().cloned().collect();
-    let put = PutQuestion { step, object, question: &question, candidates: &candidates, times_asked: 0 };
+    let candidate = |(name, &score): (&UserName, &Score)| Candidate { name: name.clone(), score };
+    let candidates: Vec<Candidate> = home.roster.names().zip(scores).map(candidate).collect();
+    let put = PutQuestion {
+        step,
+        object,
+        question: &question,
+        candidates: &candidates,
+        times_asked: 0,
+        before: None,
+        remaining: None,
+    };
     let Response::Said { answer, answered_by } = person.ask(&put).await? else {
         return Ok(OwnerSet::EMPTY);
     };

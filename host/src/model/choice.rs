@@ -61,7 +61,7 @@ pub struct ModelSettings<'a> {
     /// How long a provider may take for one request.
     pub timeout: Duration,
     /// How many tokens may be spent.
-    pub budget: Option<u64>,
+    pub budget: Option<TokenBudget>,
     /// Where replies are kept, so that the same conversation is not paid for twice.
     pub cache: Option<&'a Path>,
     /// Where every exchange is written.
@@ -89,10 +89,11 @@ pub fn ready(choice: &ModelChoice, settings: &ModelSettings<'_>) -> Result<Arc<d
         ModelChoice::Embedded | ModelChoice::Replay(_) => settings.budget.is_some(),
     };
     if counts {
-        model = Arc::new(match settings.budget {
-            Some(limit) => Metered::with_budget(model, TokenBudget::new(limit)),
+        let metered = match settings.budget {
+            Some(budget) => Metered::with_budget(model, budget),
             None => Metered::new(model),
-        }?);
+        };
+        model = Arc::new(metered.map_err(|error| ModelError::Unusable { reason: error.to_string() })?);
     }
     if let (ModelChoice::Remote(..), Some(file)) = (choice, settings.cache) {
         model = Arc::new(Cache::open(model, file)?);

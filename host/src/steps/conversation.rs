@@ -12,7 +12,7 @@ use crate::lines::json_in_lines;
 use crate::model::{Message, ToolCall};
 
 /// A tool result that is longer is cut before the model sees it, in bytes.
-const MOST_RESULT_BYTES: usize = 64 * 1024;
+pub(super) const MOST_RESULT_BYTES: usize = 64 * 1024;
 
 /// What a tool result says of the beliefs about things, which somebody else weighs where scores are fused.
 const BELIEFS: [&str; 5] = ["known_ownership", "owners", "confidence", "settled", "source"];

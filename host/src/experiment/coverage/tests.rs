@@ -28,6 +28,7 @@ fn promises() -> Promises {
         episodes: Vec::new(),
         history: History::Whole,
         withheld: BTreeSet::new(),
+        scoring: coin_schemas::report::Scoring::default(),
         created_with: "a test".to_owned(),
     };
     Promises {

@@ -53,7 +53,7 @@ fn tell_everything(narration: &mut Narration) {
     narration.inference_started(0, 34);
     narration.object_inferred();
     let scissors = (ObjectId::new("14").unwrap(), ClassLabel::new("scissors").unwrap());
-    narration.inference_failed(&scissors.0, &scissors.1, "no answer within 60 s");
+    narration.model_faltered(&scissors.0, &scissors.1, "no answer within 60 s");
     narration.inference_finished();
 
     narration.question_asked(

@@ -8,7 +8,7 @@ use coin_schemas::household::{
 };
 use coin_schemas::report::{
     AnswerStatus, Cost, Gate, MetricsReport, MetricsSummary, ObjectReport, Parameters, QuestionReport,
-    Stopped,
+    Scoring, Stopped,
 };
 use proptest::prelude::*;
 use rstest::rstest;
@@ -49,6 +49,7 @@ fn inferred(id: &str, class: &str, names: &str, confidence: f64) -> ObjectReport
         uncertainty: 1.0 - confidence,
         confidence,
         shared: owners(names).len() > 1,
+        parts: None,
         problem: None,
         truth: Some(owners(names)),
     }
@@ -89,6 +90,7 @@ fn calibration() -> Calibration {
         episodes: Vec::new(),
         history: Default::default(),
         withheld: Default::default(),
+        scoring: Scoring::default(),
         model: "embedded".to_owned(),
         alpha: 0.2,
         alpha_cp: 0.05,
@@ -125,6 +127,7 @@ fn report() -> Report {
         parameters: Parameters {
             reinference: Default::default(),
             withheld: Default::default(),
+            scoring: Scoring::default(),
             k_near: 5,
             k_sim: 5,
             sigma: 0.5,
@@ -153,6 +156,7 @@ fn report() -> Report {
             questions: 2,
         },
         cost: Cost {
+            remembered_replies: 0,
             model_calls: 21,
             tool_calls: 24,
             prompt_tokens: 0,
@@ -196,6 +200,7 @@ fn with_problems() -> Report {
     report.parameters.answers = "terminal".to_owned();
     report.stopped = Stopped::MaxQuestions;
     report.cost = Cost {
+        remembered_replies: 0,
         model_calls: 642,
         tool_calls: 1204,
         prompt_tokens: 498_113,

@@ -1,0 +1,66 @@
+//! `host` with language models, from the command line to the report, against a scripted provider that holds every
+//! request against the schema that the real provider publishes.
+
+mod economy;
+mod faults;
+mod interrupted;
+mod secrets;
+mod tapes;
+
+use std::path::Path;
+
+use coin_tests::Program;
+use coin_tests::provider::{Script, ScriptedProvider};
+use serde_json::Value;
+
+/// A key as providers give them; nothing but the request to the provider may hold it.
+const KEY: &str = "sk-proj-Zq7xVn2LmK9tRw4bY8cD1fGh";
+
+/// `host --episode FOLDER --model openai:scripted` with this provider, and more arguments.
+fn host(provider: &ScriptedProvider, episode: &Path, arguments: &[&str]) -> Program {
+    Program::new("host")
+        .arg("--episode")
+        .arg(episode)
+        .args(["--model", "openai:scripted"])
+        .args(arguments)
+        .env("OPENAI_BASE_URL", provider.openai_url())
+        .env("OPENAI_API_KEY", KEY)
+}
+
+/// The report of a run that must go well.
+#[track_caller]
+fn report(provider: &ScriptedProvider, episode: &Path, arguments: &[&str]) -> Value {
+    host(provider, episode, arguments).args(["--json", "--quiet"]).run().expect_code(0).json()
+}
+
+/// A provider that makes no mistakes and knows the key.
+fn faultless() -> ScriptedProvider {
+    ScriptedProvider::start(Script { key: Some(KEY.to_owned()), ..Script::default() })
+}
+
+fn subset_accuracy(report: &Value) -> f64 {
+    report["metrics"]["overall"]["subset_accuracy"].as_f64().unwrap()
+}
+
+fn count(report: &Value, what: &str) -> u64 {
+    report["cost"][what].as_u64().unwrap()
+}
+
+fn tokens(report: &Value) -> u64 {
+    count(report, "prompt_tokens") + count(report, "completion_tokens")
+}
+
+fn questions(report: &Value) -> &Vec<Value> {
+    report["questions"].as_array().unwrap()
+}
+
+/// The things that were asked about, in order.
+fn asked(report: &Value) -> Vec<&str> {
+    questions(report).iter().map(|question| question["object_id"].as_str().unwrap()).collect()
+}
+
+/// The report without what may differ between equal runs.
+fn without_cost(mut report: Value) -> Value {
+    report["cost"] = Value::Null;
+    report
+}
