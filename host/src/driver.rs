@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use crate::client::{ServerError, ToolServer};
 use crate::output::EventLogError;
-use crate::person::{Person, PersonError, PutQuestion, Response};
+use crate::person::{Candidate, Person, PersonError, PutQuestion, Response};
 use crate::steps::{InferStep, StepError, Steps};
 
 /// Why a run could not be carried through.
@@ -293,20 +293,31 @@ impl Driver<'_> {
                 question: &question,
                 candidates: &likeliest_first(self.roster, &scores),
                 times_asked: state.times_asked(),
+                before: None,
+                remaining: None,
             })
             .await?;
-        let (answer, answered_by) = match response {
-            Response::Said { answer, answered_by } => (answer, answered_by),
+        let members = self.roster.names().cloned().collect();
+        let answer = response.in_words(&members).unwrap_or_default();
+        let (reading, answered_by) = match response {
+            Response::Said { answer, answered_by } => {
+                (self.read_answer(&question, &answer, answered_by.as_ref()).await?, answered_by)
+            }
+            Response::Chose { owners, owner_outside_household, answered_by } => {
+                let owners = self.roster.indices().filter(|&user| owners.contains(self.roster.name(user)));
+                let reading =
+                    Reading { owners: owners.collect(), outside_household: owner_outside_household };
+                (reading, answered_by)
+            }
             Response::Declined => {
                 self.observer.observe(&LogEvent::QuestionDeclined { step, object_id: object.clone() })?;
                 return Ok((Event::Declined, Some(put)));
             }
-            Response::NobodyLeft => {
+            Response::NobodyLeft | Response::Undo | Response::Stop => {
                 self.observer.observe(&LogEvent::NobodyLeft { object_id: object.clone() })?;
                 return Ok((Event::NobodyLeft, None));
             }
         };
-        let reading = self.read_answer(&question, &answer, answered_by.as_ref()).await?;
         let ownership = self.ownership(reading.owners);
         let recorded: RecordAnswerResult = self
             .server
@@ -392,9 +403,11 @@ impl Driver<'_> {
     }
 }
 
-fn likeliest_first(roster: &Roster, scores: &[Score]) -> Vec<UserName> {
-    let mut ranked: Vec<(&UserName, Score)> = roster.names().zip(scores.iter().copied()).collect();
+fn likeliest_first(roster: &Roster, scores: &[Score]) -> Vec<Candidate> {
+    let mut ranked: Vec<Candidate> =
+        roster.names().zip(scores).map(|(name, &score)| Candidate { name: name.clone(), score }).collect();
+    ranked.sort_by(|left, right| {
+        right.score.value().total_cmp(&left.score.value()).then_with(|| left.name.cmp(&right.name))
+    });
     ranked
-        .sort_by(|left, right| right.1.value().total_cmp(&left.1.value()).then_with(|| left.0.cmp(right.0)));
-    ranked.into_iter().map(|(name, _)| name.clone()).collect()
 }

@@ -110,8 +110,15 @@ async fn ask(
         })
         .await
         .map_err(DriveError::from)?;
-    let candidates: Vec<_> = home.roster.names().cloned().collect();
-    let put = PutQuestion { step, object, question: &question, candidates: &candidates, times_asked: 0 };
+    let put = PutQuestion {
+        step,
+        object,
+        question: &question,
+        candidates: &[],
+        times_asked: 0,
+        before: None,
+        remaining: None,
+    };
     let Response::Said { answer, answered_by } = person.ask(&put).await? else {
         return Ok(OwnerSet::EMPTY);
     };
