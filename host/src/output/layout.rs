@@ -25,7 +25,7 @@ pub(super) fn names<'a>(names: impl IntoIterator<Item = &'a UserName>) -> String
 }
 
 /// `Bob, Mary and Tom`.
-pub(super) fn names_with_and(names: &[&UserName]) -> String {
+pub(crate) fn names_with_and(names: &[&UserName]) -> String {
     match names {
         [first @ .., last] if !first.is_empty() => {
             format!("{} and {}", self::names(first.iter().copied()), plain_text(last.as_str()))
@@ -68,7 +68,7 @@ pub(super) fn columns(width: u16) -> Table {
 }
 
 /// Labels on the left, text on the right, which wraps under itself. Every line ends in a line break.
-pub(super) fn labelled(rows: &[(&str, String)], indent: u16, label_width: u16, width: u16) -> String {
+pub(crate) fn labelled(rows: &[(&str, String)], indent: u16, label_width: u16, width: u16) -> String {
     let mut table = columns(width);
     table.add_rows(rows.iter().map(|(label, text)| [(*label).to_owned(), text.clone()]));
     if let Some(column) = table.column_mut(0) {

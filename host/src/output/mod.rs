@@ -2,7 +2,7 @@
 
 pub(crate) mod conclusions;
 pub mod events;
-mod layout;
+pub(crate) mod layout;
 pub mod narration;
 mod plain_text;
 pub mod printer;

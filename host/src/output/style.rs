@@ -64,11 +64,11 @@ impl Style {
         Self { width, colour: Colour::at(terminal, std::env::var_os("NO_COLOR").as_deref()) }
     }
 
-    pub(super) fn heading(self, text: impl Display) -> String {
+    pub(crate) fn heading(self, text: impl Display) -> String {
         self.apply(console::Style::new().bold(), text)
     }
 
-    pub(super) fn aside(self, text: impl Display) -> String {
+    pub(crate) fn aside(self, text: impl Display) -> String {
         self.apply(console::Style::new().dim(), text)
     }
 

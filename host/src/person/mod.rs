@@ -1,8 +1,10 @@
 //! Whoever answers the agent's questions: a simulation that knows the truth, somebody at the terminal, or a file.
 //!
-//! A [`Person`] hears a question and says something in plain language, or declines, or is not there any more.
-//! What the words mean is not decided here: the answer goes to the model that reads it.
+//! A [`Person`] hears a question and says something in plain language, or picks from the offered choices, or
+//! declines, or is not there any more. What words mean is not decided here: they go to the model that reads answers.
+//! A choice means what it says, so that no model has to read it.
 
+mod answer;
 pub mod scripted;
 pub mod simulated;
 pub mod terminal;
@@ -10,13 +12,23 @@ pub mod terminal;
 use std::fmt;
 
 use async_trait::async_trait;
-use coin_schemas::household::UserName;
+use coin_schemas::household::{Score, UserName};
 use coin_schemas::model::TaskObject;
 use thiserror::Error;
 
+pub use answer::{PreviousAnswer, Response, Understood};
 pub use scripted::{ScriptError, ScriptedPerson};
 pub use simulated::SimulatedPerson;
 pub use terminal::TerminalPerson;
+
+/// A member of the household, as somebody who may own the thing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// The member.
+    pub name: UserName,
+    /// How strongly the member is held to be an owner.
+    pub score: Score,
+}
 
 /// A question as it is put to a person.
 #[derive(Debug, Clone, Copy)]
@@ -28,25 +40,13 @@ pub struct PutQuestion<'a> {
     /// The question itself.
     pub question: &'a str,
     /// The members of the household, the likeliest owner first.
-    pub candidates: &'a [UserName],
+    pub candidates: &'a [Candidate],
     /// How often the same thing has been asked about before.
     pub times_asked: u32,
-}
-
-/// What became of a question.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Response {
-    /// Somebody answered.
-    Said {
-        /// The answer as it was given.
-        answer: String,
-        /// Who gave it, where known, so that "mine" has a meaning.
-        answered_by: Option<UserName>,
-    },
-    /// Somebody heard the question and would not answer it. Other questions may still be put.
-    Declined,
-    /// There is nobody left who could answer anything.
-    NobodyLeft,
+    /// The answer before this question; `None` where there is none that could be taken back.
+    pub before: Option<&'a PreviousAnswer>,
+    /// How many more things may be asked about after this one, at most; `None` where that is not known.
+    pub remaining: Option<usize>,
 }
 
 /// What kind of person answers; a report names it.

@@ -1,33 +1,37 @@
 //! Somebody at the terminal.
 //!
-//! The question is shown with the likeliest owners as numbered choices. A number (or several, as in `1 and 3`)
-//! stands for those people; any other words are taken as they are and go to the model that reads answers. `skip`
-//! passes the question over, the end of the input ends the questions.
+//! The question is shown with the likeliest owners as numbered choices. Numbers and names, also several of them,
+//! `e` for everybody and `o` for somebody else are choices, which mean what they say. Any other words are taken as
+//! they are and go to the model that reads answers. `?` says that the person does not know, `skip` passes the
+//! question over, `undo` takes the last answer back, `stop` ends the questions, and so does the end of the input.
 
+mod choices;
 mod lines;
+mod screen;
 #[cfg(test)]
 mod tests;
 
 use std::io::{BufRead, BufReader, Stderr, Stdin, Write};
 
 use async_trait::async_trait;
-use coin_schemas::household::UserName;
+use coin_schemas::household::{Owners, UserName};
 
+use self::choices::{Besides, Choices, FIRST_PERSON, Picked, Typed};
 use self::lines::{Line, Lines};
 use super::{Person, PersonError, PersonKind, PutQuestion, Response};
-use crate::output::plain_text;
+use crate::output::Style;
 
-/// How many people are offered as numbered choices; the others can be named.
-const MOST_CHOICES: usize = 9;
-
-/// Words by which speakers mean themselves, so that an answer needs a name beside it.
-const FIRST_PERSON: [&str; 4] = ["mine", "my", "me", "i"];
+/// What is taken as the answer of a person who picks `?`.
+const UNSURE: &str = "I don't know.";
 
 /// A person who reads questions and types answers.
 #[derive(Debug)]
 pub struct TerminalPerson<W> {
     lines: Lines,
     writer: W,
+    style: Style,
+    /// Who last said so, where "mine" was said.
+    speaker: Option<UserName>,
 }
 
 impl TerminalPerson<Stderr> {
@@ -37,30 +41,45 @@ impl TerminalPerson<Stderr> {
     /// If no thread can be started to wait for input.
     pub fn at_the_prompt() -> Result<Self, PersonError> {
         let input: BufReader<Stdin> = BufReader::new(std::io::stdin());
-        Self::new(input, std::io::stderr())
+        Self::new(input, std::io::stderr(), Style::of_stderr())
     }
 }
 
+/// Who says "mine".
+enum Speaker {
+    /// This member, or somebody unknown.
+    Is(Option<UserName>),
+    /// The words were a slip; the question is put again.
+    TakenBack,
+    /// Somebody who wants to stop.
+    Leaving,
+}
+
 impl<W: Write + Send> TerminalPerson<W> {
-    /// Asks by writing to `writer` and takes answers from `reader`, a line each.
+    /// Asks by writing to `writer`, set in this style, and takes answers from `reader`, a line each.
     ///
     /// # Errors
     /// If no thread can be started to wait for input.
-    pub fn new(reader: impl BufRead + Send + 'static, writer: W) -> Result<Self, PersonError> {
-        Ok(Self { lines: Lines::of(reader).map_err(PersonError::Read)?, writer })
+    pub fn new(reader: impl BufRead + Send + 'static, writer: W, style: Style) -> Result<Self, PersonError> {
+        Ok(Self { lines: Lines::of(reader).map_err(PersonError::Read)?, writer, style, speaker: None })
     }
 
     fn show(&mut self, text: &str) -> Result<(), PersonError> {
         self.writer.write_all(text.as_bytes()).and_then(|()| self.writer.flush()).map_err(PersonError::Show)
     }
 
+    fn remark(&mut self, text: &str) -> Result<(), PersonError> {
+        self.show(&screen::remark(self.style, text))
+    }
+
     /// Shows a text and waits for a line, as often as it takes to get one that can be read.
     async fn prompt(&mut self, text: &str) -> Result<Option<String>, PersonError> {
         self.show(text)?;
         loop {
+            self.show(screen::PROMPT)?;
             match self.lines.next().await.map_err(PersonError::Read)? {
                 Line::Text(line) => return Ok(Some(line.trim().to_owned())),
-                Line::Unreadable(why) => self.show(&format!("       {why}\n  > "))?,
+                Line::Unreadable(why) => self.remark(&why)?,
                 Line::End => {
                     self.show("\n")?;
                     return Ok(None);
@@ -69,21 +88,22 @@ impl<W: Write + Send> TerminalPerson<W> {
         }
     }
 
-    /// Asks who speaks; an empty line leaves it open.
-    async fn who_speaks(&mut self, choices: &[UserName]) -> Result<Option<UserName>, PersonError> {
-        let mut text =
-            format!("       And who are you?  {}  (Enter leaves it open)\n  > ", numbered(choices));
+    /// Asks who speaks. An empty line means whoever spoke before, or leaves it open.
+    async fn who_speaks(&mut self, all: Choices<'_>) -> Result<Speaker, PersonError> {
+        let mut text = screen::who_speaks(self.style, &all, self.speaker.as_ref());
         loop {
-            let Some(line) = self.prompt(&text).await? else { return Ok(None) };
-            if line.is_empty() || line.eq_ignore_ascii_case("skip") {
-                return Ok(None);
-            }
-            match choose(&line, choices) {
-                Choice::Of(chosen) if chosen.len() == 1 => return Ok(chosen.into_iter().next()),
-                _ => match choices.iter().find(|name| name.as_str().eq_ignore_ascii_case(&line)) {
-                    Some(name) => return Ok(Some(name.clone())),
-                    None => text = "       Please give one number or name.\n  > ".to_owned(),
-                },
+            let Some(line) = self.prompt(&text).await? else { return Ok(Speaker::Is(None)) };
+            match all.read(&line) {
+                Typed::Nothing => return Ok(Speaker::Is(self.speaker.clone())),
+                Typed::Unsure | Typed::Skip => return Ok(Speaker::Is(None)),
+                Typed::Undo => return Ok(Speaker::TakenBack),
+                Typed::Stop => return Ok(Speaker::Leaving),
+                Typed::Picked(Picked { members, besides: Besides::Nobody }) if members.len() == 1 => {
+                    self.speaker = members.into_iter().next();
+                    return Ok(Speaker::Is(self.speaker.clone()));
+                }
+                Typed::Ambiguous(names) => text = screen::remark(self.style, &ambiguous(&names)),
+                _ => text = screen::remark(self.style, "Please give one number or name."),
             }
         }
     }
@@ -96,87 +116,112 @@ impl<W: Write + Send> Person for TerminalPerson<W> {
     }
 
     async fn ask(&mut self, question: &PutQuestion<'_>) -> Result<Response, PersonError> {
-        let choices = &question.candidates[..question.candidates.len().min(MOST_CHOICES)];
-        let mut text = format!(
-            "\n  {:<3}  {}\n       {}\n       A number, or your own words; \"skip\" passes it over.\n  > ",
-            format!("Q{}", question.step),
-            plain_text(question.question.trim()),
-            numbered(choices),
-        );
+        let style = self.style;
+        let (likeliest, all) = (Choices::likeliest(question.candidates), Choices::all(question.candidates));
+        let mut choices = likeliest;
+        // Who was picked together with somebody who has no number.
+        let mut picked_before: Option<Vec<UserName>> = None;
+        let mut text = screen::question(style, question, &choices);
         let mut silences = 0;
         loop {
             let Some(line) = self.prompt(&text).await? else { return Ok(Response::NobodyLeft) };
-            if line.is_empty() {
-                silences += 1;
-                if silences > 1 {
-                    return Ok(Response::Declined);
+            text = match choices.read(&line) {
+                Typed::Nothing => {
+                    silences += 1;
+                    if silences > 1 {
+                        return Ok(Response::Declined);
+                    }
+                    screen::remark(style, "Whose is it? Press Enter again to pass it over.")
                 }
-                text = "       Whose is it? Press Enter again to pass it over.\n  > ".to_owned();
-                continue;
-            }
-            if line.eq_ignore_ascii_case("skip") {
-                return Ok(Response::Declined);
-            }
-            match choose(&line, choices) {
-                Choice::Of(chosen) => {
-                    let names: Vec<&str> = chosen.iter().map(UserName::as_str).collect();
-                    return Ok(Response::Said { answer: names.join(" and "), answered_by: None });
-                }
-                Choice::OutOfRange => {
-                    text = format!("       The choices are 1 to {}.\n  > ", choices.len());
-                }
-                Choice::OwnWords => {
-                    let answered_by = if speaks_of_self(&line) {
-                        self.who_speaks(question.candidates).await?
+                Typed::Picked(picked) => {
+                    let asked_who = picked_before.is_some();
+                    let picked = picked.after(picked_before.take().unwrap_or_default());
+                    if picked.besides == Besides::SomebodyElse
+                        && !asked_who
+                        && choices.hides_others_than(&picked.members)
+                    {
+                        choices = all;
+                        picked_before = Some(picked.members);
+                        screen::who_else(style, &likeliest, &all)
                     } else {
-                        None
-                    };
-                    return Ok(Response::Said { answer: line, answered_by });
+                        return self.chose(picked, question);
+                    }
                 }
-            }
+                Typed::Unsure => {
+                    self.remark("Noted: you do not know.")?;
+                    return Ok(Response::Said { answer: UNSURE.to_owned(), answered_by: None });
+                }
+                Typed::Skip => return Ok(Response::Declined),
+                Typed::Stop => return Ok(Response::Stop),
+                Typed::Undo if picked_before.is_some() => {
+                    picked_before = None;
+                    choices = likeliest;
+                    screen::question(style, question, &choices)
+                }
+                Typed::Undo if question.before.is_some() => return Ok(Response::Undo),
+                Typed::Undo => screen::remark(style, "There is no answer yet that could be taken back."),
+                Typed::Help => screen::help(style, &choices),
+                Typed::OutOfRange => screen::remark(style, &out_of_range(&choices)),
+                Typed::Ambiguous(names) => screen::remark(style, &ambiguous(&names)),
+                Typed::Meaningless => screen::remark(
+                    style,
+                    "That means nothing here. Please give a number, a name or a sentence; help says more.",
+                ),
+                Typed::OwnWords if speaks_of_self(&line) => match self.who_speaks(all).await? {
+                    Speaker::Is(answered_by) => {
+                        return Ok(Response::Said { answer: together(picked_before, line), answered_by });
+                    }
+                    Speaker::Leaving => return Ok(Response::Stop),
+                    Speaker::TakenBack => {
+                        picked_before = None;
+                        choices = likeliest;
+                        screen::question(style, question, &choices)
+                    }
+                },
+                Typed::OwnWords => {
+                    return Ok(Response::Said { answer: together(picked_before, line), answered_by: None });
+                }
+            };
         }
     }
 }
 
-/// `1 Tom   2 Mary`.
-fn numbered(choices: &[UserName]) -> String {
-    let choices: Vec<String> = choices
-        .iter()
-        .enumerate()
-        .map(|(place, name)| format!("{} {}", place + 1, plain_text(name.as_str())))
-        .collect();
-    choices.join("   ")
+impl<W: Write + Send> TerminalPerson<W> {
+    /// Says what was understood of a choice, and hands it on.
+    fn chose(&mut self, picked: Picked, question: &PutQuestion<'_>) -> Result<Response, PersonError> {
+        let household: Owners = question.candidates.iter().map(|candidate| candidate.name.clone()).collect();
+        let response = Response::Chose {
+            owners: picked.members.into_iter().collect(),
+            owner_outside_household: picked.besides == Besides::SomebodyElse,
+            answered_by: None,
+        };
+        self.remark(&format!("Noted: {}.", response.in_words(&household).unwrap_or_default()))?;
+        Ok(response)
+    }
 }
 
-#[derive(Debug, PartialEq)]
-enum Choice {
-    /// These people, by number.
-    Of(Vec<UserName>),
-    /// A number that stands for nobody.
-    OutOfRange,
-    /// No number.
-    OwnWords,
+/// Words that say who owns a thing besides those who were picked.
+fn together(picked: Option<Vec<UserName>>, words: String) -> String {
+    let picked: Vec<String> = picked.iter().flatten().map(ToString::to_string).collect();
+    if picked.is_empty() { words } else { format!("{} and {words}", picked.join(", ")) }
 }
 
-/// Reads `2`, `1 3`, `1, 3`, `1 and 3`, `1+3`; anything with another word in it is the speaker's own words.
-fn choose(line: &str, choices: &[UserName]) -> Choice {
-    let parts: Vec<&str> = line
-        .split(|letter: char| letter.is_whitespace() || ",;+&.".contains(letter))
-        .filter(|part| !part.is_empty() && !part.eq_ignore_ascii_case("and"))
-        .collect();
-    if parts.is_empty() || !parts.iter().all(|part| part.bytes().all(|byte| byte.is_ascii_digit())) {
-        return Choice::OwnWords;
+fn out_of_range(choices: &Choices<'_>) -> String {
+    let numbers = match choices.numbered().len() {
+        0 => return "There are no numbers to choose from.".to_owned(),
+        1 => "The only number is 1".to_owned(),
+        last => format!("The numbers are 1 to {last}"),
+    };
+    if choices.hides_others_than(&[]) {
+        format!("{numbers}; o shows who else there is, and every name will do.")
+    } else {
+        format!("{numbers}.")
     }
-    let mut chosen: Vec<UserName> = Vec::new();
-    for part in parts {
-        let place = part.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
-        match place.and_then(|place| choices.get(place)) {
-            Some(name) if chosen.contains(name) => {}
-            Some(name) => chosen.push(name.clone()),
-            None => return Choice::OutOfRange,
-        }
-    }
-    Choice::Of(chosen)
+}
+
+fn ambiguous(names: &[UserName]) -> String {
+    let names: Vec<&str> = names.iter().map(UserName::as_str).collect();
+    format!("That may be {}; please give the number, or the name just so.", names.join(" or "))
 }
 
 /// Whether the speaker's name is needed to understand the answer. "I don't know" and "I think" need none.

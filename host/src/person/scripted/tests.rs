@@ -26,8 +26,15 @@ async fn ask(person: &mut ScriptedPerson, id: &str) -> Response {
         position: Position::new([0.0; 3]).unwrap(),
         room: None,
     };
-    let question =
-        PutQuestion { step: 1, object: &object, question: "Whose?", candidates: &[], times_asked: 0 };
+    let question = PutQuestion {
+        step: 1,
+        object: &object,
+        question: "Whose?",
+        candidates: &[],
+        times_asked: 0,
+        before: None,
+        remaining: None,
+    };
     person.ask(&question).await.unwrap()
 }
 

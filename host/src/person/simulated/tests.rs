@@ -36,7 +36,15 @@ async fn ask(person: &mut SimulatedPerson, id: &str, times_asked: u32) -> (Strin
         position: Position::new([0.0; 3]).unwrap(),
         room: None,
     };
-    let question = PutQuestion { step: 1, object: &object, question: "Whose?", candidates: &[], times_asked };
+    let question = PutQuestion {
+        step: 1,
+        object: &object,
+        question: "Whose?",
+        candidates: &[],
+        times_asked,
+        before: None,
+        remaining: None,
+    };
     match person.ask(&question).await.unwrap() {
         Response::Said { answer, answered_by } => (answer, answered_by.unwrap().to_string()),
         other => panic!("{other:?}"),
