@@ -29,7 +29,7 @@ use crate::calibrate::{CalibrateError, CalibrateSettings, CalibrationFileError, 
 use crate::generate::{self, Protocol};
 use crate::home::{self, HomeError};
 use crate::model::ChatModel;
-use crate::model::counted::{Counted, TokenizerError};
+use crate::model::metered::{Metered, TokenizerError};
 use crate::parallel;
 use crate::run::RunError;
 use methods::CalibrationKind;
@@ -153,7 +153,7 @@ pub async fn run(
     progress: &mut (dyn Progress + Send),
 ) -> Result<ExperimentResults, ExperimentError> {
     let homes = load(settings).await?;
-    let model: Arc<dyn ChatModel> = Arc::new(Counted::new(model)?);
+    let model: Arc<dyn ChatModel> = Arc::new(Metered::new(model)?);
     let calibrations = Arc::new(calibrations(settings, &model, progress).await?);
 
     let mut jobs = Vec::new();

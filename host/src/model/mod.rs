@@ -3,8 +3,8 @@
 //! The embedded model stands behind it exactly as a language model does, so that everything above it, from the
 //! tool-calling loop to the report, is the same for both.
 
-pub mod counted;
 pub mod embedded;
+pub mod metered;
 
 use async_trait::async_trait;
 
