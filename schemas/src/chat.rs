@@ -2,6 +2,8 @@
 //!
 //! Providers translate these into their own forms; a tape (`host --record FILE`) holds them as they stand here.
 
+use std::ops::AddAssign;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -181,6 +183,20 @@ pub struct TokenUsage {
     pub prompt_tokens: u64,
     /// Received from it.
     pub completion_tokens: u64,
+}
+
+impl TokenUsage {
+    /// Both together.
+    pub fn total(self) -> u64 {
+        self.prompt_tokens.saturating_add(self.completion_tokens)
+    }
+}
+
+impl AddAssign for TokenUsage {
+    fn add_assign(&mut self, other: Self) {
+        self.prompt_tokens = self.prompt_tokens.saturating_add(other.prompt_tokens);
+        self.completion_tokens = self.completion_tokens.saturating_add(other.completion_tokens);
+    }
 }
 
 /// Why a model did not answer.

@@ -94,6 +94,7 @@ fn is_list(text: &str) -> bool {
 }
 
 /// What looks like an object.
+#[derive(Clone, Copy)]
 enum Found<'a> {
     /// From its first brace to the one that closes it.
     Closed(&'a str),
