@@ -28,8 +28,12 @@ async fn a_server_that_goes_away_leaves_a_call_unanswered() {
     let server = ScriptedProvider::start(Script::default());
     let model = model(&server, Provider::OpenAi);
     first_turn(&model).await.unwrap();
+    let url = server.openai_url();
     drop(server);
-    assert_eq!(unanswered(first_turn(&model).await), "connection refused (tried 4 times)");
+    assert_eq!(
+        unanswered(first_turn(&model).await),
+        format!("{url} is out of reach: connection refused (tried 4 times)")
+    );
 }
 
 #[tokio::test]

@@ -148,7 +148,7 @@ fn names(text: &str, word: &str) -> bool {
     text.match_indices(word).any(|(start, found)| {
         let before = text[..start].chars().next_back();
         let after = text[start + found.len()..].chars().next();
-        !before.is_some_and(is_part) && !after.is_some_and(|character| is_part(character) && character != 's')
+        !before.is_some_and(is_part) && !after.is_some_and(is_part)
     })
 }
 

@@ -24,6 +24,9 @@ pub(super) fn explain(
         }
         (not_tried @ Failure::NotTried { .. }, _) => unanswered(not_tried.to_string()),
         (Failure::Status(refusal), _) => refused(refusal, endpoint, model, policy, &tried),
+        (failure @ Failure::NoResponse(_), _) => {
+            unanswered(format!("{} is out of reach: {failure}{tried}", endpoint.shown))
+        }
         (failure, _) => unanswered(format!("{failure}{tried}")),
     }
 }

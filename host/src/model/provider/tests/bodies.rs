@@ -60,12 +60,197 @@ fn body(write: impl Fn(&ChatRequest<'_>) -> Value) -> Value {
 
 #[test]
 fn openai_is_asked() {
-    insta::assert_json_snapshot!(body(|request| openai::body("gpt", request, &Offer::default(), 7)), @"");
+    insta::assert_json_snapshot!(body(|request| openai::body("gpt", request, &Offer::default(), 7)), @r#"
+    {
+      "model": "gpt",
+      "messages": [
+        {
+          "role": "system",
+          "content": "Judge."
+        },
+        {
+          "role": "user",
+          "content": "{\"task\": \"infer_ownership\"}"
+        },
+        {
+          "role": "assistant",
+          "content": "I look around.",
+          "tool_calls": [
+            {
+              "id": "c1",
+              "type": "function",
+              "function": {
+                "name": "nearby_objects",
+                "arguments": "{\"object_id\":\"marker\"}"
+              }
+            },
+            {
+              "id": "c2",
+              "type": "function",
+              "function": {
+                "name": "nearby_objects",
+                "arguments": "{\"object_id\": "
+              }
+            }
+          ]
+        },
+        {
+          "role": "tool",
+          "tool_call_id": "c1",
+          "content": "{\"nearby_objects\": []}"
+        },
+        {
+          "role": "tool",
+          "tool_call_id": "c2",
+          "content": "the arguments must be a JSON object"
+        },
+        {
+          "role": "assistant",
+          "content": "It is Bob's."
+        },
+        {
+          "role": "user",
+          "content": "Answer again with JSON only."
+        },
+        {
+          "role": "assistant",
+          "content": ""
+        },
+        {
+          "role": "user",
+          "content": "Your reply was empty."
+        }
+      ],
+      "tools": [
+        {
+          "type": "function",
+          "function": {
+            "name": "nearby_objects",
+            "description": "What lies near a thing.",
+            "parameters": {
+              "type": "object"
+            }
+          }
+        }
+      ],
+      "response_format": {
+        "type": "json_schema",
+        "json_schema": {
+          "name": "ownership",
+          "strict": true,
+          "schema": {
+            "type": "object"
+          }
+        }
+      },
+      "temperature": 0.2,
+      "seed": 7,
+      "max_completion_tokens": 8192
+    }
+    "#);
 }
 
 #[test]
 fn anthropic_is_asked() {
-    insta::assert_json_snapshot!(body(|request| anthropic::body("claude", request, &Offer::default())), @"");
+    insta::assert_json_snapshot!(body(|request| anthropic::body("claude", request, &Offer::default())), @r#"
+    {
+      "model": "claude",
+      "max_tokens": 8192,
+      "temperature": 0.2,
+      "system": [
+        {
+          "type": "text",
+          "text": "Judge.",
+          "cache_control": {
+            "type": "ephemeral"
+          }
+        }
+      ],
+      "tools": [
+        {
+          "name": "nearby_objects",
+          "description": "What lies near a thing.",
+          "input_schema": {
+            "type": "object"
+          }
+        }
+      ],
+      "messages": [
+        {
+          "role": "user",
+          "content": [
+            {
+              "type": "text",
+              "text": "{\"task\": \"infer_ownership\"}"
+            }
+          ]
+        },
+        {
+          "role": "assistant",
+          "content": [
+            {
+              "type": "text",
+              "text": "I look around."
+            },
+            {
+              "type": "tool_use",
+              "id": "c1",
+              "name": "nearby_objects",
+              "input": {
+                "object_id": "marker"
+              }
+            },
+            {
+              "type": "tool_use",
+              "id": "c2",
+              "name": "nearby_objects",
+              "input": {
+                "malformed_arguments": "{\"object_id\": "
+              }
+            }
+          ]
+        },
+        {
+          "role": "user",
+          "content": [
+            {
+              "type": "tool_result",
+              "tool_use_id": "c1",
+              "content": "{\"nearby_objects\": []}"
+            },
+            {
+              "type": "tool_result",
+              "tool_use_id": "c2",
+              "content": "the arguments must be a JSON object",
+              "is_error": true
+            }
+          ]
+        },
+        {
+          "role": "assistant",
+          "content": [
+            {
+              "type": "text",
+              "text": "It is Bob's."
+            }
+          ]
+        },
+        {
+          "role": "user",
+          "content": [
+            {
+              "type": "text",
+              "text": "Answer again with JSON only."
+            },
+            {
+              "type": "text",
+              "text": "Your reply was empty."
+            }
+          ]
+        }
+      ]
+    }
+    "#);
 }
 
 #[test]

@@ -33,8 +33,8 @@ fn requests_are_posted_below_the_base_url(#[case] provider: Provider, #[case] ba
 
 #[test]
 fn a_missing_key_is_told() {
-    insta::assert_snapshot!(endpoint(Provider::OpenAi, &[]).unwrap_err(), @"");
-    insta::assert_snapshot!(endpoint(Provider::Anthropic, &[("ANTHROPIC_API_KEY", " \n")]).unwrap_err(), @"");
+    insta::assert_snapshot!(endpoint(Provider::OpenAi, &[]).unwrap_err(), @"there is no key for OpenAI; set OPENAI_API_KEY to one, set OPENAI_BASE_URL to a server that needs none, or run with --model embedded");
+    insta::assert_snapshot!(endpoint(Provider::Anthropic, &[("ANTHROPIC_API_KEY", " \n")]).unwrap_err(), @"there is no key for Anthropic; set ANTHROPIC_API_KEY to one, or run with --model embedded");
     let elsewhere = [("ANTHROPIC_BASE_URL", "http://localhost:1")];
     assert!(endpoint(Provider::Anthropic, &elsewhere).is_err());
 }

@@ -86,7 +86,32 @@ fn a_message_of_anthropic_is_read_block_by_block() {
     });
     let reply = anthropic::reply(&body, BTreeSet::new()).unwrap();
     assert_eq!(reply.usage, TokenUsage { prompt_tokens: 325, completion_tokens: 40 });
-    insta::assert_json_snapshot!(reply, @"");
+    insta::assert_json_snapshot!(reply, @r#"
+    {
+      "text": "I look around.",
+      "tool_calls": [
+        {
+          "id": "toolu_1",
+          "tool": "nearby_objects",
+          "arguments": {
+            "object_id": "mug"
+          }
+        },
+        {
+          "id": "call_1",
+          "tool": "similar_objects",
+          "arguments": "{\"object_id"
+        }
+      ],
+      "ending": {
+        "how": "finished"
+      },
+      "usage": {
+        "prompt_tokens": 325,
+        "completion_tokens": 40
+      }
+    }
+    "#);
 }
 
 #[test]
