@@ -159,7 +159,8 @@ pub enum Ending {
 }
 
 /// Where a reply comes from.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Origin {
     /// The model gave it just now.
     #[default]

@@ -13,4 +13,5 @@ pub mod experiment;
 pub mod household;
 pub mod model;
 pub mod report;
+pub mod tape;
 pub mod tools;

@@ -5,6 +5,7 @@
 
 pub mod embedded;
 pub mod metered;
+pub mod tape;
 
 use async_trait::async_trait;
 
