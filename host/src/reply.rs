@@ -41,8 +41,8 @@ fn check_length(text: &str) -> Result<(), UnreadableReply> {
     }
 }
 
-/// As much of a model's words as an error may repeat, in one line.
-fn excerpt(text: &str) -> String {
+/// As much of foreign words as an error may repeat, in one line.
+pub(crate) fn excerpt(text: &str) -> String {
     const LONGEST: usize = 200;
     let cut = &text[..text.floor_char_boundary(LONGEST)];
     let dots = if cut.len() < text.len() { "…" } else { "" };

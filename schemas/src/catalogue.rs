@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde_json::Value;
 
-use crate::{calibration, episode, events, experiment, journal, model, report, tools};
+use crate::{calibration, episode, events, experiment, journal, model, report, tape, tools};
 
 fn schema_of<T: JsonSchema>() -> Value {
     let mut schema = SchemaGenerator::from(SchemaSettings::draft2020_12()).into_root_schema_for::<T>();
@@ -35,6 +35,8 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("experiment-results.schema.json", schema_of::<experiment::ExperimentResults>()),
         ("log-event.schema.json", schema_of::<events::LogEvent>()),
         ("journal-entry.schema.json", schema_of::<journal::JournalEntry>()),
+        ("tape-header.schema.json", schema_of::<tape::TapeHeader>()),
+        ("tape-exchange.schema.json", schema_of::<tape::Exchange>()),
         ("task.schema.json", schema_of::<model::Task>()),
         ("ownership-reply.schema.json", schema_of::<model::OwnershipReply>()),
         ("ownerships-reply.schema.json", schema_of::<model::OwnershipsReply>()),

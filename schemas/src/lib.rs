@@ -14,4 +14,5 @@ pub mod household;
 pub mod journal;
 pub mod model;
 pub mod report;
+pub mod tape;
 pub mod tools;

@@ -29,7 +29,7 @@ use crate::calibrate::{CalibrateError, CalibrateSettings, CalibrationFileError, 
 use crate::generate::{self, Protocol};
 use crate::home::{self, HomeError};
 use crate::model::ChatModel;
-use crate::model::metered::{Metered, TokenizerError};
+use crate::model::metered::Metered;
 use crate::parallel;
 use crate::run::{CONCURRENCY, RunError, default_scoring};
 use methods::CalibrationKind;
@@ -95,9 +95,6 @@ pub enum ExperimentError {
     /// The built-in calibration is damaged.
     #[error(transparent)]
     Calibration(#[from] CalibrationFileError),
-    /// The tokenizer does not load.
-    #[error(transparent)]
-    Tokenizer(#[from] TokenizerError),
     /// There is no place for the homes on which the guarantees are measured.
     #[error("the homes on which the guarantees are measured cannot be made: {0}")]
     Folder(#[from] std::io::Error),
@@ -153,7 +150,7 @@ pub async fn run(
     progress: &mut (dyn Progress + Send),
 ) -> Result<ExperimentResults, ExperimentError> {
     let homes = load(settings).await?;
-    let model: Arc<dyn ChatModel> = Arc::new(Metered::new(model)?);
+    let model: Arc<dyn ChatModel> = Arc::new(Metered::new(model));
     let calibrations = Arc::new(calibrations(settings, &model, progress).await?);
 
     let mut jobs = Vec::new();

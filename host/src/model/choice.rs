@@ -89,11 +89,10 @@ pub fn ready(choice: &ModelChoice, settings: &ModelSettings<'_>) -> Result<Arc<d
         ModelChoice::Embedded | ModelChoice::Replay(_) => settings.budget.is_some(),
     };
     if counts {
-        let metered = match settings.budget {
+        model = Arc::new(match settings.budget {
             Some(budget) => Metered::with_budget(model, budget),
             None => Metered::new(model),
-        };
-        model = Arc::new(metered.map_err(|error| ModelError::Unusable { reason: error.to_string() })?);
+        });
     }
     if let (ModelChoice::Remote(..), Some(file)) = (choice, settings.cache) {
         model = Arc::new(Cache::open(model, file)?);

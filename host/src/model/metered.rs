@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use async_trait::async_trait;
 
 pub use budget::{InvalidBudget, TokenBudget};
-pub use counter::TokenizerError;
+use counter::TokenizerError;
 
 use super::{ChatModel, ChatReply, ChatRequest, ModelError, Origin, TokenUsage};
 use counter::Counter;
@@ -40,21 +40,14 @@ struct Account {
 
 impl Metered {
     /// Counts the conversations of this model, however many they are.
-    ///
-    /// # Errors
-    /// If the vocabulary that the program carries is damaged.
-    pub fn new(model: Arc<dyn ChatModel>) -> Result<Self, TokenizerError> {
-        let counter = Arc::new(Counter::new()?);
-        Ok(Self { model, counter, budget: None, account: Mutex::default() })
+    pub fn new(model: Arc<dyn ChatModel>) -> Self {
+        Self { model, counter: Arc::default(), budget: None, account: Mutex::default() }
     }
 
     /// Counts the conversations of this model and ends them with [`ModelError::OutOfBudget`] where they would take
     /// more than the budget. A model that charges nothing is held to what it would cost.
-    ///
-    /// # Errors
-    /// If the vocabulary that the program carries is damaged.
-    pub fn with_budget(model: Arc<dyn ChatModel>, budget: TokenBudget) -> Result<Self, TokenizerError> {
-        Ok(Self { budget: Some(budget), ..Self::new(model)? })
+    pub fn with_budget(model: Arc<dyn ChatModel>, budget: TokenBudget) -> Self {
+        Self { budget: Some(budget), ..Self::new(model) }
     }
 
     /// The tokens of all requests that ended so far; replies from memory cost nothing.
@@ -69,7 +62,7 @@ impl Metered {
     /// Puts the prompt aside, if there is a budget.
     async fn reserve(&self, request: &ChatRequest<'_>) -> Result<Option<Reservation<'_>>, ModelError> {
         let Some(budget) = self.budget else { return Ok(None) };
-        let prompt = self.counter.prompt(request).await;
+        let prompt = self.counter.prompt(request).await?;
         let mut account = self.account();
         let limit = budget.tokens();
         if account.spent.total().saturating_add(account.reserved).saturating_add(prompt) > limit {
@@ -79,14 +72,20 @@ impl Metered {
         Ok(Some(Reservation { meter: self, prompt, ending: ReservationEnding::Spend }))
     }
 
-    async fn usage(&self, request: &ChatRequest<'_>, reply: &ChatReply) -> TokenUsage {
+    async fn usage(&self, request: &ChatRequest<'_>, reply: &ChatReply) -> Result<TokenUsage, TokenizerError> {
         if reply.origin == Origin::Memory || reply.usage != TokenUsage::default() {
-            return reply.usage;
+            return Ok(reply.usage);
         }
-        TokenUsage {
-            prompt_tokens: self.counter.prompt(request).await,
-            completion_tokens: self.counter.completion(reply).await,
-        }
+        Ok(TokenUsage {
+            prompt_tokens: self.counter.prompt(request).await?,
+            completion_tokens: self.counter.completion(reply).await?,
+        })
+    }
+}
+
+impl From<TokenizerError> for ModelError {
+    fn from(error: TokenizerError) -> Self {
+        Self::Unusable { reason: error.to_string() }
     }
 }
 
@@ -125,7 +124,7 @@ impl ChatModel for Metered {
         let mut reservation = self.reserve(request).await?;
         let outcome = self.model.complete(request).await;
         let usage = match &outcome {
-            Ok(reply) => self.usage(request, reply).await,
+            Ok(reply) => self.usage(request, reply).await?,
             Err(_) => TokenUsage::default(),
         };
         if let Some(reservation) = &mut reservation {

@@ -23,27 +23,22 @@ const PART: usize = 64 * 1024;
 /// The tokenizer's vocabulary does not load, which is a fault of this program.
 #[derive(Debug, Error)]
 #[error("the o200k tokenizer does not load: {0}; please report this")]
-pub struct TokenizerError(String);
+pub(crate) struct TokenizerError(String);
 
 /// The vocabulary takes a while to load, and it is always the same.
 static TOKENIZER: LazyLock<Result<CoreBPE, String>> =
     LazyLock::new(|| o200k_base().map_err(|error| error.to_string()));
 
-/// Counts tokens.
+/// Counts tokens. The vocabulary is loaded when the first text is counted: most providers count themselves.
+#[derive(Default)]
 pub(super) struct Counter {
-    tokenizer: &'static CoreBPE,
     /// The same instructions, tools and results come again and again: their counts are kept.
     counts: Mutex<HashMap<String, u64>>,
 }
 
 impl Counter {
-    pub(super) fn new() -> Result<Self, TokenizerError> {
-        let tokenizer = TOKENIZER.as_ref().map_err(|error| TokenizerError(error.clone()))?;
-        Ok(Self { tokenizer, counts: Mutex::new(HashMap::new()) })
-    }
-
     /// What a request sends: the conversation, the tools as they are written into it, and the form of the reply.
-    pub(super) async fn prompt(self: &Arc<Self>, request: &ChatRequest<'_>) -> u64 {
+    pub(super) async fn prompt(self: &Arc<Self>, request: &ChatRequest<'_>) -> Result<u64, TokenizerError> {
         let mut texts = Vec::new();
         for message in request.conversation {
             match message {
@@ -59,16 +54,16 @@ impl Counter {
         if let ReplyFormat::Json { schema, .. } = request.reply {
             texts.push(Cow::Owned(schema.to_string()));
         }
-        TOKENS_PER_MESSAGE * request.conversation.len() as u64 + self.sum(&texts).await
+        Ok(TOKENS_PER_MESSAGE * request.conversation.len() as u64 + self.sum(&texts).await?)
     }
 
     /// What a reply says and calls.
-    pub(super) async fn completion(self: &Arc<Self>, reply: &ChatReply) -> u64 {
+    pub(super) async fn completion(self: &Arc<Self>, reply: &ChatReply) -> Result<u64, TokenizerError> {
         let texts: Vec<Cow<'_, str>> = reply_texts(reply.text.as_deref(), &reply.tool_calls).collect();
         self.sum(&texts).await
     }
 
-    async fn sum(self: &Arc<Self>, texts: &[Cow<'_, str>]) -> u64 {
+    async fn sum(self: &Arc<Self>, texts: &[Cow<'_, str>]) -> Result<u64, TokenizerError> {
         let new: Vec<&str> =
             texts.iter().map(AsRef::as_ref).filter(|text| self.known(text).is_none()).collect();
         if new.iter().map(|text| text.len()).sum::<usize>() > MOST_BYTES_AT_ONCE {
@@ -88,12 +83,14 @@ impl Counter {
         self.counts.lock().unwrap_or_else(PoisonError::into_inner).get(text).copied()
     }
 
-    fn count(&self, text: &str) -> u64 {
-        self.known(text).unwrap_or_else(|| {
-            let count = parts(text).map(|part| self.tokenizer.count_ordinary(part) as u64).sum();
-            self.counts.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_owned(), count);
-            count
-        })
+    fn count(&self, text: &str) -> Result<u64, TokenizerError> {
+        if let Some(known) = self.known(text) {
+            return Ok(known);
+        }
+        let tokenizer = TOKENIZER.as_ref().map_err(|error| TokenizerError(error.clone()))?;
+        let count = parts(text).map(|part| tokenizer.count_ordinary(part) as u64).sum();
+        self.counts.lock().unwrap_or_else(PoisonError::into_inner).insert(text.to_owned(), count);
+        Ok(count)
     }
 }
 

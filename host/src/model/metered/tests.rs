@@ -68,7 +68,7 @@ fn budget(tokens: u64) -> TokenBudget {
 /// "hello world" is the two tokens 24912 and 2375 of o200k.
 #[tokio::test]
 async fn a_conversation_is_counted_where_the_model_counts_nothing() {
-    let model = Metered::new(Says::words("hello world", TokenUsage::default())).unwrap();
+    let model = Metered::new(Says::words("hello world", TokenUsage::default()));
     let counted = usage(2 + TOKENS_PER_MESSAGE, 2);
     assert_eq!(ask(&model, "hello world").await.unwrap().usage, counted);
     assert_eq!(model.spent(), counted);
@@ -76,7 +76,7 @@ async fn a_conversation_is_counted_where_the_model_counts_nothing() {
 
 #[tokio::test]
 async fn what_the_model_counts_itself_stays() {
-    let model = Metered::new(Says::words("hello", usage(70, 7))).unwrap();
+    let model = Metered::new(Says::words("hello", usage(70, 7)));
     assert_eq!(ask(&model, "hello world").await.unwrap().usage, usage(70, 7));
     ask(&model, "hello world").await.unwrap();
     assert_eq!(model.spent(), usage(140, 14));
@@ -85,7 +85,7 @@ async fn what_the_model_counts_itself_stays() {
 #[tokio::test]
 async fn what_is_remembered_costs_nothing() {
     let remembered = ChatReply { origin: Origin::Memory, ..ChatReply::words("hello") };
-    let model = Metered::with_budget(Says::new(Ok(remembered.clone())), budget(5)).unwrap();
+    let model = Metered::with_budget(Says::new(Ok(remembered.clone())), budget(5));
     for _ in 0..3 {
         assert_eq!(ask(&model, "hello world").await.unwrap(), remembered);
     }
@@ -101,7 +101,7 @@ async fn what_is_remembered_costs_nothing() {
 #[tokio::test]
 async fn a_prompt_that_does_not_fit_is_not_sent(#[case] limit: u64, #[case] sent: u64) {
     let says = Says::words("", usage(5, 0));
-    let model = Metered::with_budget(says.clone(), budget(limit)).unwrap();
+    let model = Metered::with_budget(says.clone(), budget(limit));
     for number in 0..3 {
         let outcome = ask(&model, "hello world").await;
         assert_eq!(outcome.is_ok(), number < sent);
@@ -114,7 +114,7 @@ async fn a_prompt_that_does_not_fit_is_not_sent(#[case] limit: u64, #[case] sent
 
 #[tokio::test]
 async fn what_the_model_charged_counts_and_not_the_estimate() {
-    let model = Metered::with_budget(Says::words("", usage(2, 1)), budget(10)).unwrap();
+    let model = Metered::with_budget(Says::words("", usage(2, 1)), budget(10));
     for _ in 0..2 {
         ask(&model, "hello world").await.unwrap();
     }
@@ -126,7 +126,7 @@ async fn what_the_model_charged_counts_and_not_the_estimate() {
 #[tokio::test]
 async fn a_failed_request_gives_its_tokens_back() {
     let failure = ModelError::Unanswered { reason: "busy".to_owned() };
-    let model = Metered::with_budget(Says::new(Err(failure.clone())), budget(5)).unwrap();
+    let model = Metered::with_budget(Says::new(Err(failure.clone())), budget(5));
     for _ in 0..3 {
         assert_eq!(ask(&model, "hello world").await, Err(failure.clone()));
     }
@@ -135,7 +135,7 @@ async fn a_failed_request_gives_its_tokens_back() {
 
 #[tokio::test]
 async fn a_request_that_nobody_waits_for_was_still_sent() {
-    let model = Metered::with_budget(Says::words("", usage(5, 0)), budget(9)).unwrap();
+    let model = Metered::with_budget(Says::words("", usage(5, 0)), budget(9));
     let mut call = Box::pin(ask(&model, "hello world"));
     assert!(futures::poll!(call.as_mut()).is_pending());
     drop(call);
@@ -145,7 +145,7 @@ async fn a_request_that_nobody_waits_for_was_still_sent() {
 
 #[tokio::test]
 async fn long_texts_are_counted_like_short_ones() {
-    let model = Metered::new(Says::words("", TokenUsage::default())).unwrap();
+    let model = Metered::new(Says::words("", TokenUsage::default()));
     let words = 40_000;
     let counted = ask(&model, &"hello ".repeat(words)).await.unwrap().usage.prompt_tokens;
     let cuts = 6 * words as u64 / 65_536 + 1;
@@ -158,7 +158,7 @@ async fn long_texts_are_counted_like_short_ones() {
 #[case::three_bytes("€", 100_000)]
 #[tokio::test]
 async fn no_text_is_too_long_to_count(#[case] piece: &str, #[case] times: usize) {
-    let model = Metered::new(Says::words("", TokenUsage::default())).unwrap();
+    let model = Metered::new(Says::words("", TokenUsage::default()));
     assert!(ask(&model, &piece.repeat(times)).await.unwrap().usage.prompt_tokens > 100);
 }
 
@@ -190,7 +190,7 @@ proptest! {
     ) {
         let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(4).build().unwrap();
         let says = Says::words(&"word ".repeat(completion as usize), TokenUsage::default());
-        let model = Arc::new(Metered::with_budget(says.clone(), budget(limit)).unwrap());
+        let model = Arc::new(Metered::with_budget(says.clone(), budget(limit)));
         let calls = words.iter().map(|&words| {
             let model = Arc::clone(&model);
             let text = vec!["word"; words].join(" ");
