@@ -114,7 +114,6 @@ impl ExperimentError {
             Self::Calibrate(error) => error.is_refusal(),
             Self::Twice { .. } => true,
             Self::Calibration(_)
-            | Self::Tokenizer(_)
             | Self::Folder(_)
             | Self::Write(_)
             | Self::Samples(_) => false,

@@ -95,7 +95,8 @@ fn the_report_does_not_depend_on_concurrency() {
     let (one, many) = (slow(), slow());
     let alone = report(&one, &small_house(), &["--concurrency", "1"]);
     let together = report(&many, &small_house(), &["--concurrency", "7"]);
-    assert_eq!((one.most_at_once(), many.most_at_once()), (1, 7));
+    assert_eq!(one.most_at_once(), 1);
+    assert!((5..=7).contains(&many.most_at_once()), "{}", many.most_at_once());
     let without_seconds = |mut report: Value| {
         report["cost"]["seconds"] = Value::Null;
         report

@@ -53,7 +53,7 @@ fn a_conversation_that_is_not_on_the_tape_is_told() {
         .args(["--model", &format!("replay:{}", tape.display())])
         .run()
         .expect_code(1)
-        .expect_stderr(&["not on the tape", "umbrella", "--record"]);
+        .expect_stderr(&["holds no reply", "umbrella", "--record"]);
 }
 
 #[test]

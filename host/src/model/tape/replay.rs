@@ -117,6 +117,10 @@ fn subject(conversation: &[Message]) -> String {
     let Some(text) = task else { return "a conversation without a task".to_owned() };
     match serde_json::from_str(text) {
         Ok(Task::InferOwnership { object, .. }) => format!("infer_ownership of {}", thing(&object)),
+        Ok(Task::InferSeveral { things, .. }) => {
+            let things: Vec<String> = things.iter().map(|known| thing(&known.object)).collect();
+            format!("infer_several of {}", excerpt(&things.join(", ")))
+        }
         Ok(Task::AskQuestion { object, .. }) => format!("ask_question about {}", thing(&object)),
         Ok(Task::ReadAnswer { answer, .. }) => format!("read_answer {:?}", excerpt(&answer)),
         Ok(Task::JudgeSharing { classes }) => format!("judge_sharing of {} classes", classes.len()),

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use coin_schemas::household::ObjectId;
 use coin_schemas::model::Task;
+use coin_schemas::report::Scoring;
 use futures::future::join_all;
 use proptest::prelude::*;
 use rstest::rstest;
@@ -50,11 +51,12 @@ async fn a_step_plays_back_as_it_was() {
     let home =
         Home::open(crate::home::load(&folder).await.unwrap(), None, &ServerAddress::InProcess).await.unwrap();
     let infer = async |model: &dyn ChatModel, id: &str| {
-        let steps = Steps::new(model, &home.server, &home.roster, &BTreeSet::new());
+        let steps = Steps::new(model, &home.server, &home.roster, &BTreeSet::new(), Scoring::default());
         let task = Task::InferOwnership {
             household: home.roster.users(),
-            object: home.things[&ObjectId::new(id).unwrap()].clone(),
             as_of: home.episode.now,
+            object: home.things[&ObjectId::new(id).unwrap()].clone(),
+            context: None,
         };
         let step = steps.infer(&task).await;
         (step.called, step.outcome.map_err(|error| error.to_string()), steps.cost())
