@@ -4,7 +4,7 @@
 mod facts;
 pub(crate) mod guarantee;
 
-use coin_schemas::household::{Owners, Source};
+use coin_schemas::household::{Owners, Scores, Source, UserName};
 use coin_schemas::report::{AnswerStatus, Gate, ObjectReport, QuestionReport, Report};
 
 use super::layout::names;
@@ -55,6 +55,7 @@ pub(crate) fn why(report: &Report, object: &ObjectReport) -> String {
             if !is_unknown(object) {
                 reasons.push(if object.shared { "inferred, shared" } else { "inferred" }.to_owned());
             }
+            reasons.extend(other_common_sense(object));
             reasons.extend(object.problem.as_ref().map(|problem| plain_text(problem).into_owned()));
             reasons.extend(questions.last().map(|question| format!("Q{} left it open", question.step)));
             reasons.extend(not_excluded(report, object));
@@ -64,6 +65,21 @@ pub(crate) fn why(report: &Report, object: &ObjectReport) -> String {
         }
     }
     reasons.join("; ")
+}
+
+/// What the language model's common sense would say, where the evidence says somebody else.
+fn other_common_sense(object: &ObjectReport) -> Option<String> {
+    let parts = object.parts.as_ref()?;
+    let (by_model, by_evidence) = (likeliest(parts.model.as_ref()?)?, likeliest(&parts.evidence)?);
+    (by_model != by_evidence).then(|| format!("common sense says {}", plain_text(by_model.as_str())))
+}
+
+/// The member with the highest score; nobody where two share it.
+fn likeliest(scores: &Scores) -> Option<&UserName> {
+    let highest = scores.values().map(|score| score.value()).fold(f64::NEG_INFINITY, f64::max);
+    let mut with_it = scores.iter().filter(|(_, score)| score.value() == highest);
+    let first = with_it.next()?.0;
+    with_it.next().is_none().then_some(first)
 }
 
 /// Who else is plausible. A threshold that excludes nobody says nothing of any one thing.

@@ -1,7 +1,7 @@
 //! What is known of one thing: whose it is, how sure that is, and from what it follows.
 
 use coin_schemas::episode::EpisodeObject;
-use coin_schemas::household::{Owners, Source};
+use coin_schemas::household::{Owners, Scores, Source, UserName};
 use coin_schemas::report::{ObjectReport, Report};
 use coin_schemas::tools::{KnownOwnership, UsageSummary};
 use maud::{Markup, html};
@@ -76,6 +76,12 @@ fn scores(of_report: &ObjectReport, palette: &Palette<'_>) -> Markup {
     html! {
         table.scores {
             caption { "Score of each" }
+            @if of_report.parts.is_some() {
+                thead { tr {
+                    th scope="col" { "Who" } th scope="col" {} th scope="col" { "Together" }
+                    th scope="col" { "Common sense" } th scope="col" { "Evidence" }
+                } }
+            }
             tbody {
                 @for (name, score) in &of_report.scores {
                     @let owner = Owners::from([name.clone()]);
@@ -83,11 +89,20 @@ fn scores(of_report: &ObjectReport, palette: &Palette<'_>) -> Markup {
                         th scope="row" { (palette.swatch(&owner)) (name) }
                         td { meter min="0" max="1" value=(format!("{:.3}", score.value())) {} }
                         td { (percent(score.value())) }
+                        @if let Some(parts) = &of_report.parts {
+                            td { (part(parts.model.as_ref(), name)) }
+                            td { (part(Some(&parts.evidence), name)) }
+                        }
                     }
                 }
             }
         }
     }
+}
+
+/// What one part of a fused score says of a member.
+fn part(scores: Option<&Scores>, name: &UserName) -> String {
+    scores.and_then(|scores| scores.get(name)).map_or_else(|| "–".to_owned(), |score| percent(score.value()))
 }
 
 fn usage(usage: &UsageSummary) -> Markup {
