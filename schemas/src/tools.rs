@@ -277,6 +277,31 @@ pub struct RecordAnswerResult {
     pub status: AnswerStatus,
 }
 
+/// Arguments of `retract_answer`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RetractAnswer {
+    /// Id of the thing, as list_objects gives it.
+    pub object_id: String,
+}
+
+/// Result of `retract_answer`: what is believed of the thing without the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RetractAnswerResult {
+    /// The thing.
+    pub object: ObjectRef,
+    /// Who is held to own it; empty where nothing is believed.
+    pub owners: Owners,
+    /// Probability of that owner set, 0…1; 0 where nothing is believed.
+    pub confidence: f64,
+    /// Whether no question is needed.
+    pub settled: bool,
+    /// `inferred` where a model's scores count again; absent where nothing is believed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Source")]
+    pub source: Option<Source>,
+}
+
 /// Arguments of `record_usage`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
