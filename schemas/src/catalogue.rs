@@ -50,6 +50,8 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("similar-objects.result.schema.json", schema_of::<tools::SimilarObjectsResult>()),
         ("record-answer.arguments.schema.json", schema_of::<tools::RecordAnswer>()),
         ("record-answer.result.schema.json", schema_of::<tools::RecordAnswerResult>()),
+        ("retract-answer.arguments.schema.json", schema_of::<tools::RetractAnswer>()),
+        ("retract-answer.result.schema.json", schema_of::<tools::RetractAnswerResult>()),
         ("record-usage.arguments.schema.json", schema_of::<tools::RecordUsage>()),
         ("record-usage.result.schema.json", schema_of::<tools::RecordUsageResult>()),
         ("record-scores.arguments.schema.json", schema_of::<tools::RecordScores>()),

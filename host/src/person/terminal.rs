@@ -169,7 +169,10 @@ impl<W: Write + Send> Person for TerminalPerson<W> {
                 ),
                 Typed::OwnWords if speaks_of_self(&line) => match self.who_speaks(all).await? {
                     Speaker::Is(answered_by) => {
-                        return Ok(Response::Said { answer: together(picked_before, line), answered_by });
+                        return Ok(Response::Said {
+                            answer: together(picked_before.as_deref(), line),
+                            answered_by,
+                        });
                     }
                     Speaker::Leaving => return Ok(Response::Stop),
                     Speaker::TakenBack => {
@@ -179,7 +182,10 @@ impl<W: Write + Send> Person for TerminalPerson<W> {
                     }
                 },
                 Typed::OwnWords => {
-                    return Ok(Response::Said { answer: together(picked_before, line), answered_by: None });
+                    return Ok(Response::Said {
+                        answer: together(picked_before.as_deref(), line),
+                        answered_by: None,
+                    });
                 }
             };
         }
@@ -201,8 +207,8 @@ impl<W: Write + Send> TerminalPerson<W> {
 }
 
 /// Words that say who owns a thing besides those who were picked.
-fn together(picked: Option<Vec<UserName>>, words: String) -> String {
-    let picked: Vec<String> = picked.iter().flatten().map(ToString::to_string).collect();
+fn together(picked: Option<&[UserName]>, words: String) -> String {
+    let picked: Vec<String> = picked.unwrap_or_default().iter().map(ToString::to_string).collect();
     if picked.is_empty() { words } else { format!("{} and {words}", picked.join(", ")) }
 }
 

@@ -93,6 +93,17 @@ pub struct RecordedAnswer {
     pub at: DateTime,
     /// What became of it.
     pub status: AnswerStatus,
+    /// When it was taken back, where it was.
+    pub retracted_at: Option<DateTime>,
+}
+
+/// What came of taking an answer back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Retraction {
+    /// The answer that was believed is not believed any more.
+    Retracted,
+    /// No answer was believed, and nothing has changed.
+    NothingToRetract,
 }
 
 impl RecordedAnswer {
@@ -199,13 +210,14 @@ impl Reader<'_> {
         object: ObjectKey,
     ) -> Result<Vec<RecordedAnswer>, StoreError> {
         let mut statement = self.transaction.prepare_cached(
-            "SELECT question, answer, ownership, outside, answered_by, at, status FROM answers
+            "SELECT question, answer, ownership, outside, answered_by, at, status, retracted_at FROM answers
              WHERE object_key = ?1 ORDER BY sequence",
         )?;
         let mut rows = statement.query([object.0])?;
         let mut answers = Vec::new();
         while let Some(row) = rows.next()? {
             let answered_by: Option<i64> = row.get(4)?;
+            let retracted_at: Option<i64> = row.get(7)?;
             answers.push(RecordedAnswer {
                 question: row.get(0)?,
                 answer: row.get(1)?,
@@ -219,6 +231,7 @@ impl Reader<'_> {
                     "answered" => AnswerStatus::Answered,
                     _ => AnswerStatus::Unresolved,
                 },
+                retracted_at: retracted_at.map(datetime).transpose()?,
             });
         }
         Ok(answers)
@@ -274,8 +287,9 @@ impl Writer<'_> {
         self.transaction
             .prepare_cached(
                 "INSERT INTO answers
-                     (object_key, sequence, question, answer, ownership, outside, answered_by, at, status)
-                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
+                     (object_key, sequence, question, answer, ownership, outside, answered_by, at, status,
+                      retracted_at)
+                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
             )?
             .execute((
                 object.0,
@@ -290,6 +304,7 @@ impl Writer<'_> {
                     AnswerStatus::Answered => "answered",
                     AnswerStatus::Unresolved => "unresolved",
                 },
+                answer.retracted_at.map(civil_seconds),
             ))?;
         if answer.status == AnswerStatus::Answered {
             self.transaction
@@ -300,5 +315,27 @@ impl Writer<'_> {
                 .execute((object.0, sequence))?;
         }
         Ok(())
+    }
+
+    /// Takes back the answer that is believed of a thing at present: from `at` on it counts no more than if it had
+    /// not been given, and no older answer takes its place. The history keeps it.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub fn retract_answer(&self, object: ObjectKey, at: DateTime) -> Result<Retraction, StoreError> {
+        let retracted = self
+            .transaction
+            .prepare_cached(
+                "UPDATE answers SET retracted_at = ?2 WHERE (object_key, sequence) IN
+                     (SELECT object_key, sequence FROM present_answers WHERE object_key = ?1)",
+            )?
+            .execute((object.0, civil_seconds(at)))?;
+        if retracted == 0 {
+            return Ok(Retraction::NothingToRetract);
+        }
+        self.transaction
+            .prepare_cached("DELETE FROM present_answers WHERE object_key = ?1")?
+            .execute([object.0])?;
+        Ok(Retraction::Retracted)
     }
 }

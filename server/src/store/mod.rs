@@ -25,7 +25,7 @@ use std::sync::{Mutex, PoisonError};
 
 use rusqlite::{Connection, Transaction, TransactionBehavior};
 
-pub use beliefs::{Belief, Inference, RecordedAnswer};
+pub use beliefs::{Belief, Inference, RecordedAnswer, Retraction};
 pub use error::{BUSY_SECONDS, StoreError};
 pub use household::{Household, UserKey};
 pub use import::ImportSummary;

@@ -15,6 +15,7 @@ mod record_answer;
 mod record_scores;
 mod record_usage;
 mod registry;
+mod retract_answer;
 mod schema;
 mod similar_objects;
 #[cfg(test)]

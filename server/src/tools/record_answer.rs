@@ -18,7 +18,7 @@ impl Tool for RecordAnswerTool {
     const DESCRIPTION: &'static str = "Stores what a person answered when asked whose a thing is, with your \
         reading of the answer: true for every member of the household whom it makes an owner (several may own \
         a thing together; members left out are false). From then on the answer is what is believed of the \
-        thing, until there is another answer. If the answer names nobody (\"I don't know\"), leave all false: \
+        thing, until there is another answer or retract_answer takes it back. If the answer names nobody (\"I don't know\"), leave all false: \
         the status is then unresolved, and you may ask somebody else. If the owner is a guest or a neighbour, \
         set owner_outside_household. Call it only after a person has answered; what you conclude yourself \
         belongs into record_scores.";
@@ -84,13 +84,14 @@ fn read_answer(
         answered_by,
         at,
         status,
+        retracted_at: None,
     };
     Ok((answer, owners))
 }
 
 /// Whether a call repeats the latest answer about the thing. A call that leaves the time to the server repeats
-/// it whatever the time is by now. A call that repeats an older answer does not count: somebody changed their
-/// mind, and changed it back.
+/// it whatever the time is by now. A call that repeats an older answer does not count, nor one that repeats an
+/// answer that was taken back: somebody changed their mind, and changed it back.
 fn repeats(answer: &RecordedAnswer, latest: &RecordedAnswer, as_of: Option<DateTime>) -> bool {
     let at = as_of.unwrap_or(latest.at);
     RecordedAnswer { at, ..answer.clone() } == *latest

@@ -15,6 +15,7 @@ use super::nearby_objects::NearbyObjectsTool;
 use super::record_answer::RecordAnswerTool;
 use super::record_scores::RecordScoresTool;
 use super::record_usage::RecordUsageTool;
+use super::retract_answer::RetractAnswerTool;
 use super::similar_objects::SimilarObjectsTool;
 use super::{Effect, Tool, ToolError, arguments, schema};
 use crate::near_miss;
@@ -123,6 +124,7 @@ impl Registry {
         add(RecordAnswerTool::NAME, Entry::new::<RecordAnswerTool>());
         add(RecordScoresTool::NAME, Entry::new::<RecordScoresTool>());
         add(RecordUsageTool::NAME, Entry::new::<RecordUsageTool>());
+        add(RetractAnswerTool::NAME, Entry::new::<RetractAnswerTool>());
         add(SimilarObjectsTool::NAME, Entry::new::<SimilarObjectsTool>());
         Self { entries }
     }

@@ -5,7 +5,7 @@ use rstest::rstest;
 use serde_json::{Value, json};
 
 /// The tools of this version and whether they only look.
-const TOOLS: [(&str, bool); 8] = [
+const TOOLS: [(&str, bool); 9] = [
     ("get_usage_summary", true),
     ("list_objects", true),
     ("list_users", true),
@@ -13,6 +13,7 @@ const TOOLS: [(&str, bool); 8] = [
     ("record_answer", false),
     ("record_scores", false),
     ("record_usage", false),
+    ("retract_answer", false),
     ("similar_objects", true),
 ];
 
@@ -156,6 +157,7 @@ fn results_satisfy_the_published_schemas_too() {
         ("nearby_objects", json!({"object_id": "marker"})),
         ("similar_objects", json!({"object_id": "marker"})),
         ("record_answer", super::answer("marker", "Bob")),
+        ("retract_answer", json!({"object_id": "marker"})),
         ("record_usage", json!({"captions": [{"object_id": "marker", "caption": "soon"}]})),
         ("record_scores", json!({"object_id": "marker", "scores": {"Bob": 1, "Mary": 0, "Tom": 0}})),
         ("list_objects", json!({"limit": 1})),

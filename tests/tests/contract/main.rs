@@ -10,6 +10,7 @@ mod lists;
 mod protocol;
 mod recording;
 mod refusals;
+mod retractions;
 mod scores;
 mod surroundings;
 mod usage_summary;

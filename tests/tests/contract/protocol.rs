@@ -82,6 +82,8 @@ fn one_of_each() -> Vec<(&'static str, Value)> {
         ("record_answer", super::answer("mug-blue", "Mary")),
         ("nearby_objects", json!({"object_id": "marker"})),
         ("similar_objects", json!({"object_id": "marker"})),
+        ("retract_answer", json!({"object_id": "mug-blue"})),
+        ("retract_answer", json!({"object_id": "mug-blue"})),
         ("list_objects", json!({"limit": 2})),
         ("get_usage_summary", json!({"object_id": "markr"})),
     ]

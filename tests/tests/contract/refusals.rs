@@ -23,8 +23,14 @@ fn changed(tool: &str, changes: Value) -> Value {
     arguments
 }
 
-const WITH_AN_OBJECT: [&str; 5] =
-    ["get_usage_summary", "nearby_objects", "similar_objects", "record_answer", "record_scores"];
+const WITH_AN_OBJECT: [&str; 6] = [
+    "get_usage_summary",
+    "nearby_objects",
+    "similar_objects",
+    "record_answer",
+    "record_scores",
+    "retract_answer",
+];
 
 #[test]
 fn an_unknown_object_is_answered_with_near_misses() {

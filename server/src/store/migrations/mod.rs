@@ -9,7 +9,7 @@ use super::error::StoreError;
 /// Marks a SQLite file as ours (`COIN` in ASCII).
 pub(super) const APPLICATION_ID: i32 = 0x434F_494E;
 
-const STEPS: &[M<'_>] = &[M::up(include_str!("01-household.sql"))];
+const STEPS: &[M<'_>] = &[M::up(include_str!("01-household.sql")), M::up(include_str!("02-retractions.sql"))];
 
 /// The version of a database that this program writes.
 pub(super) const VERSION: usize = STEPS.len();
@@ -73,5 +73,29 @@ mod tests {
     #[test]
     fn the_steps_apply_to_an_empty_database() {
         Migrations::from_slice(STEPS).validate().unwrap();
+    }
+
+    #[test]
+    fn answers_of_the_first_version_count_as_before() {
+        let mut connection = Connection::open_in_memory().unwrap();
+        Migrations::from_slice(&STEPS[..1]).to_latest(&mut connection).unwrap();
+        connection
+            .execute_batch(
+                r#"INSERT INTO users (name) VALUES ('Bob');
+                   INSERT INTO objects (id, class, x, y, z) VALUES ('1', 'marker', 0, 0, 0);
+                   INSERT INTO answers VALUES (1, 1, 'Whose?', 'Bob''s.', '{"Bob":true}', 0, NULL, 0, 'answered');
+                   INSERT INTO present_answers VALUES (1, 1);"#,
+            )
+            .unwrap();
+        migrate(&mut connection).unwrap();
+        assert_eq!(identify(&connection).unwrap(), Identity::Ours { version: VERSION });
+        let kept: (String, Option<i64>) = connection
+            .query_row(
+                "SELECT answer, retracted_at FROM answers JOIN present_answers USING (object_key, sequence)",
+                [],
+                |row| Ok((row.get(0)?, row.get(1)?)),
+            )
+            .unwrap();
+        assert_eq!(kept, ("Bob's.".to_owned(), None));
     }
 }

@@ -52,6 +52,7 @@ fn sorted(value: Value) -> Value {
 #[case("record_answer")]
 #[case("record_scores")]
 #[case("record_usage")]
+#[case("retract_answer")]
 #[case("similar_objects")]
 fn the_definition_is_as_committed(#[case] name: &str) {
     let definition = registry().definition(name).unwrap();
@@ -85,13 +86,18 @@ fn names_are_short_and_plain() {
     }
 }
 
+/// Whether a tool changes what is known of the home.
+fn records(tool: &str) -> bool {
+    tool.starts_with("record_") || tool == "retract_answer"
+}
+
 #[test]
 fn every_tool_has_a_title_a_description_and_all_hints() {
     for tool in definitions() {
         assert!(tool.title.is_some_and(|title| !title.is_empty()), "{}", tool.name);
         assert!(tool.description.is_some_and(|text| (80..=900).contains(&text.len())), "{}", tool.name);
         let hints = tool.annotations.unwrap();
-        let records = tool.name.starts_with("record_");
+        let records = records(&tool.name);
         assert_eq!(hints.read_only_hint, Some(!records), "{}", tool.name);
         assert_eq!(hints.destructive_hint, Some(false), "{}", tool.name);
         assert_eq!(hints.idempotent_hint, Some(true), "{}", tool.name);
@@ -178,7 +184,7 @@ fn the_whole_list_is_small() {
 #[test]
 fn a_server_that_may_not_write_offers_no_tool_that_records() {
     let registry = Registry::new(&ToolSelection::all(), Access::ReadOnly);
-    assert!(registry.definitions().iter().all(|tool| !tool.name.starts_with("record_")));
+    assert!(!registry.definitions().iter().any(|tool| records(&tool.name)));
     assert_eq!(registry.definitions().len(), 5);
 }
 
@@ -196,6 +202,6 @@ fn tools_can_be_selected() {
         names("core"),
         ["get_usage_summary", "nearby_objects", "record_answer", "record_usage", "similar_objects"]
     );
-    assert_eq!(names("all").len(), 8);
-    insta::assert_snapshot!("list_user".parse::<ToolSelection>().unwrap_err(), @r#"there is no tool "list_user". Did you mean "list_users" or "list_objects"? The tools are get_usage_summary, list_objects, list_users, nearby_objects, record_answer, record_scores, record_usage, similar_objects."#);
+    assert_eq!(names("all").len(), 9);
+    insta::assert_snapshot!("list_user".parse::<ToolSelection>().unwrap_err(), @r#"there is no tool "list_user". Did you mean "list_users" or "list_objects"? The tools are get_usage_summary, list_objects, list_users, nearby_objects, record_answer, record_scores, record_usage, retract_answer, similar_objects."#);
 }

@@ -2,6 +2,7 @@ mod arguments;
 mod definitions;
 mod reading;
 mod recording;
+mod retracting;
 
 use rmcp::model::JsonObject;
 use serde_json::Value;

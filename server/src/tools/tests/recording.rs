@@ -5,16 +5,16 @@ use serde_json::json;
 use super::*;
 use crate::test_home;
 
-fn answer(object: &str, words: &str, ownership: &Value) -> Value {
+pub(super) fn answer(object: &str, words: &str, ownership: &Value) -> Value {
     json!({"object_id": object, "question": "Whose is it?", "answer": words, "ownership": ownership})
 }
 
-fn listed(store: &Store, object: &str) -> Value {
+pub(super) fn listed(store: &Store, object: &str) -> Value {
     let objects = done(store, "list_objects", json!({}))["objects"].take();
     objects.as_array().unwrap().iter().find(|listed| listed["id"] == object).unwrap().clone()
 }
 
-fn history(store: &Store, object: &str) -> Vec<String> {
+pub(super) fn history(store: &Store, object: &str) -> Vec<String> {
     store
         .read::<_, crate::store::StoreError>(|reader| {
             let household = reader.household()?.unwrap();
