@@ -24,6 +24,17 @@ async fn a_server_that_was_never_there_is_told_with_the_next_step() {
 }
 
 #[tokio::test]
+async fn a_server_that_speaks_no_tls_is_told() {
+    let server = ScriptedProvider::start(Script::default());
+    let url = server.openai_url().replace("http://", "https://");
+    let model = RemoteModel::at(Provider::OpenAi, "llama", &url, Some(KEY), settings()).unwrap();
+    let reason = unusable(first_turn(&model).await);
+    assert!(reason.starts_with(&format!("no model answers at {url}: ")), "{reason}");
+    assert!(reason.contains("corrupt message"), "{reason}");
+    assert_eq!(server.request_count(), 0);
+}
+
+#[tokio::test]
 async fn a_server_that_goes_away_leaves_a_call_unanswered() {
     let server = ScriptedProvider::start(Script::default());
     let model = model(&server, Provider::OpenAi);

@@ -36,7 +36,10 @@ pub(super) enum Failure {
         excerpt: String,
     },
     /// So many attempts have failed in a row that none is made for a while.
-    #[error("not tried: the last {failures} attempts failed ({last}); the next one is made in {} s", .wait.as_secs_f64().ceil())]
+    #[error(
+        "not tried: the last {failures} attempts failed ({last}); the next one is made in {} s",
+        .wait.as_secs_f64().ceil()
+    )]
     NotTried {
         /// How many attempts have failed in a row.
         failures: u32,

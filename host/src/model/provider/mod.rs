@@ -1,6 +1,6 @@
 //! Language models behind HTTP: OpenAI's chat completions, which many servers speak, and Anthropic's messages.
 //!
-//! A request is made and an answer read by pure functions ([`openai`], [`anthropic`]). Between them stands one way
+//! A request is made and an answer read by pure functions (`openai`, `anthropic`). Between them stands one way
 //! of sending: with a time limit, retries, a circuit breaker over all calls, and parameters that are taken back
 //! where a server refuses them.
 
@@ -240,7 +240,8 @@ impl ChatModel for RemoteModel {
             let Some(less) = self.concessions.less(&offer, &body, &given_up.failure) else {
                 return Err(self.explain(&given_up));
             };
-            tracing::info!(model = self.name, failure = %given_up.failure, "a parameter was refused; going on without it");
+            let failure = &given_up.failure;
+            tracing::info!(model = self.name, %failure, "a parameter was refused; going on without it");
             offer = less;
         }
     }

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use rstest::rstest;
 use serde_json::{Value, json};
 
-use super::super::{anthropic, openai, unique_id};
-use crate::model::{ChatReply, Ending, TokenUsage};
+use super::super::{anthropic, call_ids, openai, unique_id};
+use crate::model::{ChatReply, Ending, Message, TokenUsage};
 
 fn openai_reply(message: &Value, finish_reason: &str) -> ChatReply {
     let body = json!({"choices": [{"message": message, "finish_reason": finish_reason}]});
@@ -146,6 +146,15 @@ fn calls_without_an_id_get_one() {
     let reply = openai::reply(&body, BTreeSet::from(["call_2".to_owned()])).unwrap();
     let ids: Vec<&str> = reply.tool_calls.iter().map(|call| call.id.as_str()).collect();
     assert_eq!(ids, ["call_1", "call_3", "call_4", "call_5", "call_6"]);
+}
+
+#[test]
+fn calls_of_earlier_turns_keep_their_ids_to_themselves() {
+    let body = json!({"content": [{"type": "tool_use", "id": "call_0", "name": "a", "input": {}}]});
+    let first = anthropic::reply(&body, BTreeSet::new()).unwrap();
+    let conversation = [Message::Assistant { text: None, tool_calls: first.tool_calls }];
+    let second = anthropic::reply(&body, call_ids(&conversation)).unwrap();
+    assert_eq!(second.tool_calls[0].id, "call_1");
 }
 
 proptest! {
