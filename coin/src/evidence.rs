@@ -69,6 +69,8 @@ pub enum Opinion<'a> {
     /// What a language model makes of the class, the people and the place: for every member the probability of being
     /// an owner, in the order of the roster. It must not have seen the usage, which would count twice.
     OfModel(&'a [Score]),
+    /// The surest opinion that a language model can have: nobody but these people.
+    Certain(OwnerSet),
 }
 
 impl<'a> From<Option<&'a Expectation>> for Opinion<'a> {
@@ -277,14 +279,17 @@ pub fn posterior(
     OwnerSetDistribution::from_log_weights(sets.iter().map(|&set| {
         let by_size = by_size(set);
         let mixed = |weight: f64, expected: f64| log((1.0 - weight) * libm::exp(by_size) + weight * expected);
-        let own = match (expectation, &of_model) {
-            (Some(expectation), _) => {
+        let own = match (opinion, expectation, &of_model) {
+            (Opinion::Certain(owners), ..) => {
+                mixed(parameters.language_model, if set == owners { 1.0 } else { 0.0 })
+            }
+            (_, Some(expectation), _) => {
                 mixed(parameters.common_sense, expected(expectation, set, sizes_between, &suited))
             }
-            (None, Some(opinion)) => {
+            (_, None, Some(opinion)) => {
                 mixed(parameters.language_model, opinion.of(set, libm::exp(by_size)) / opinion.sum)
             }
-            (None, None) => by_size,
+            (_, None, None) => by_size,
         };
         let shared: f64 =
             couplings.iter().filter(|&&(owners, _)| owners == set).map(|&(_, coupling)| coupling).sum();
@@ -295,6 +300,25 @@ pub fn posterior(
         };
         (set, prior + log_likelihood(sessions, set, parameters))
     }))
+}
+
+/// The least probability that the best owner set can be left with by a language model, whatever it says: with the whole
+/// weight of an opinion on the rival that explains the usage best. 1 where there is no rival. Where this is high a model
+/// need not be asked, because its word can settle nothing.
+pub fn least_confidence(
+    sessions: &[u64],
+    relatives: &[KnownRelative],
+    parameters: &EvidenceParameters,
+) -> f64 {
+    let (best, confidence) = posterior(sessions, Opinion::None, relatives, parameters).best();
+    let likelihood = |set: &OwnerSet| log_likelihood(sessions, *set, parameters);
+    let rivals = candidate_sets(sessions.len()).into_iter().filter(|&set| set != best);
+    rivals
+        .max_by(|left, right| likelihood(left).total_cmp(&likelihood(right)))
+        .map_or(confidence, |rival| {
+            posterior(sessions, Opinion::Certain(rival), relatives, parameters).probability(best)
+        })
+        .min(confidence)
 }
 
 #[cfg(test)]

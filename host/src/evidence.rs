@@ -124,6 +124,30 @@ pub fn judge(
     opinion: Opinion<'_>,
     parameters: &EvidenceParameters,
 ) -> Result<OwnerSetDistribution, RosterError> {
+    let (sessions, relatives) = weighed(roster, class, context)?;
+    Ok(posterior(&sessions, opinion, &relatives, parameters))
+}
+
+/// The least probability that the best owner set can be left with by a language model, whatever it says.
+///
+/// # Errors
+/// If the context names people who are not of the household.
+pub fn least_confidence(
+    roster: &Roster,
+    class: &ClassLabel,
+    context: &GivenContext,
+    parameters: &EvidenceParameters,
+) -> Result<f64, RosterError> {
+    let (sessions, relatives) = weighed(roster, class, context)?;
+    Ok(coin::evidence::least_confidence(&sessions, &relatives, parameters))
+}
+
+/// The sessions of every member, and the things with answered owners that bear on this one.
+fn weighed(
+    roster: &Roster,
+    class: &ClassLabel,
+    context: &GivenContext,
+) -> Result<(Vec<u64>, Vec<KnownRelative>), RosterError> {
     let mut sessions = vec![0; roster.len()];
     for usage in context.usage.iter().flat_map(|summary| &summary.user_summary) {
         sessions[roster.index_of(usage.user_id.as_str())?.place()] = usage.sessions;
@@ -139,7 +163,7 @@ pub fn judge(
             relatives.extend(answered(roster, look_alike.known_ownership.as_ref(), relation)?);
         }
     }
-    Ok(posterior(&sessions, opinion, &relatives, parameters))
+    Ok((sessions, relatives))
 }
 
 /// Only what a person said is passed on: an inferred owner rests on the same evidence as the thing in question,

@@ -210,7 +210,8 @@ pub struct ObjectReport {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScoreParts {
-    /// What the language model makes of the class, the people and the place; absent where it failed.
+    /// What the language model makes of the class, the people and the place; absent where it failed, or was not asked
+    /// because no opinion could have unsettled what the evidence says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Scores")]
     pub model: Option<Scores>,

@@ -60,7 +60,8 @@ pub struct Inference {
 /// The two parts of a fused belief: every member's score, in the order of the roster.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parts {
-    /// What a language model makes of the class, the people and the place; `None` where it failed.
+    /// What a language model makes of the class, the people and the place; `None` where it failed, or was not asked
+    /// because no opinion could have unsettled what the evidence says.
     pub model: Option<Vec<Score>>,
     /// What the evidence model makes of the usage and of the answers about other things.
     pub evidence: Vec<Score>,

@@ -396,6 +396,20 @@ mod opinion_of_a_model {
         }
     }
 
+    proptest! {
+        /// Whatever a model says, the best set keeps what was promised of it; and nearly no more can be promised.
+        #[test]
+        fn leaves_the_best_set_what_is_promised((sessions, values) in any_opinion()) {
+            let promised = least_confidence(&sessions, &[], &defaults());
+            let best = posterior(&sessions, Opinion::None, &[], &defaults()).best().0;
+            prop_assert!(with(&sessions, &values).probability(best) >= promised - EXACT);
+            let worst = candidate_sets(sessions.len()).into_iter().map(|certain| {
+                posterior(&sessions, Opinion::Certain(certain), &[], &defaults()).probability(best)
+            });
+            prop_assert!((worst.fold(1.0, f64::min) - promised).abs() < EXACT);
+        }
+    }
+
     /// The least prior probability of an owner set, which bounds how much the mixture can favour one.
     fn smallest_prior(members: usize) -> f64 {
         posterior(&vec![0; members], Opinion::None, &[], &defaults())

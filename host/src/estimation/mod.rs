@@ -10,6 +10,7 @@ mod tests;
 use std::collections::BTreeMap;
 
 use coin::agent::{Inference, Parts};
+use coin::calibration::UNCALIBRATED_CONFIDENCE;
 use coin::common_sense::expect;
 use coin::evidence::{EvidenceParameters, Opinion};
 use coin::owners::OwnerSetDistribution;
@@ -20,13 +21,17 @@ use coin_schemas::report::{ContextSource, Estimator, Reinference, Withheld};
 use jiff::civil::DateTime;
 
 use crate::client::ServerError;
-use crate::evidence::{context, judge, related, surroundings};
+use crate::evidence::{context, judge, least_confidence, related, surroundings};
 use crate::model::ModelError;
 use crate::steps::{CalledTool, InferStep, Scored, StepError, Steps};
 use memory::{Basis, Memory};
 
 /// How many captions of each person a model finds in the prompt, as many as it is shown by default when it asks.
 const EXAMPLES_IN_THE_PROMPT: u32 = 5;
+
+/// A model is not asked about a thing whose best owner set keeps at least this probability whatever it says: even
+/// without a calibration nobody would be asked about it.
+const DECIDED: f64 = UNCALIBRATED_CONFIDENCE;
 
 /// The evidence model counts sessions and reads no captions.
 const NO_EXAMPLES: u32 = 0;
@@ -246,10 +251,15 @@ impl<'a> Estimation<'a> {
         }
     }
 
-    /// The model's common sense, heard once for each thing, and the evidence as it is now, in one posterior.
+    /// The model's common sense, heard once for each thing, and the evidence as it is now, in one posterior. Where no
+    /// opinion could unsettle what the evidence says the model is not asked.
     async fn fused(&self, things: &[&TaskObject]) -> Vec<Estimate> {
-        let unheard: Vec<&TaskObject> =
-            things.iter().copied().filter(|thing| self.memory.opinion(&thing.id).is_none()).collect();
+        let mut unheard: Vec<&TaskObject> = Vec::new();
+        for thing in things {
+            if self.memory.opinion(&thing.id).is_none() && !self.is_decided(thing).await {
+                unheard.push(thing);
+            }
+        }
         let (mut failures, mut called) = (BTreeMap::new(), BTreeMap::new());
         let mut remarks: BTreeMap<ObjectId, String> = BTreeMap::new();
         for (id, (tools, outcome)) in self.hear(&unheard).await {
@@ -273,6 +283,15 @@ impl<'a> Estimation<'a> {
             known.insert(thing.id.clone(), outcome);
         }
         in_order(things, known, called)
+    }
+
+    /// Whether the evidence settles a thing whatever a model says. What cannot be told here fails where it is weighed.
+    async fn is_decided(&self, thing: &TaskObject) -> bool {
+        match self.context(thing, NO_EXAMPLES).await {
+            Ok(context) => least_confidence(&self.told, &thing.class, &context, &self.parameters)
+                .is_ok_and(|least| least >= DECIDED),
+            Err(_) => false,
+        }
     }
 
     /// Has the model say what common sense says of these things.

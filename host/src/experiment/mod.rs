@@ -113,10 +113,7 @@ impl ExperimentError {
             Self::Episode { source, .. } => source.is_refusal(),
             Self::Calibrate(error) => error.is_refusal(),
             Self::Twice { .. } => true,
-            Self::Calibration(_)
-            | Self::Folder(_)
-            | Self::Write(_)
-            | Self::Samples(_) => false,
+            Self::Calibration(_) | Self::Folder(_) | Self::Write(_) | Self::Samples(_) => false,
         }
     }
 }

@@ -72,7 +72,11 @@ impl Metered {
         Ok(Some(Reservation { meter: self, prompt, ending: ReservationEnding::Spend }))
     }
 
-    async fn usage(&self, request: &ChatRequest<'_>, reply: &ChatReply) -> Result<TokenUsage, TokenizerError> {
+    async fn usage(
+        &self,
+        request: &ChatRequest<'_>,
+        reply: &ChatReply,
+    ) -> Result<TokenUsage, TokenizerError> {
         if reply.origin == Origin::Memory || reply.usage != TokenUsage::default() {
             return Ok(reply.usage);
         }

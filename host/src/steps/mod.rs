@@ -128,7 +128,7 @@ const TELLS_BACKGROUND: &str = "list_users";
 impl<'a> Steps<'a> {
     /// Steps that cost nothing yet. What is withheld is withheld from LLM-INFER alone: a question may still name a
     /// role, and an answer that does can still be read. Where scores are fused, the model is not offered what the
-    /// evidence model weighs, because it would count twice.
+    /// evidence model weighs, because it would count twice, nor what the task tells already.
     pub fn new(
         model: &'a dyn ChatModel,
         server: &'a ToolServer,
@@ -140,7 +140,7 @@ impl<'a> Steps<'a> {
         let told = |tool: &ToolDefinition| match (scoring.context, tool.name.as_str()) {
             (ContextSource::Given, _) => false,
             (_, TELLS_USAGE) => !fused && !withheld.contains(&Withheld::Usage),
-            (_, TELLS_BACKGROUND) => !withheld.contains(&Withheld::Background),
+            (_, TELLS_BACKGROUND) => !fused && !withheld.contains(&Withheld::Background),
             _ => true,
         };
         let mut household = roster.users();

@@ -63,11 +63,7 @@ fn it_takes_a_fraction_of_the_papers_calls_and_tokens(#[case] arguments: &[&str]
     let provider = faultless();
     let folder = TempDir::new().unwrap();
     let calibration = calibrated(&provider, &folder, arguments);
-    let ours = report(
-        &provider,
-        &small_house(),
-        &[arguments, &["--calibration", &calibration]].concat(),
-    );
+    let ours = report(&provider, &small_house(), &[arguments, &["--calibration", &calibration]].concat());
     provider.assert_no_violations();
     println!(
         "{arguments:?}: {} questions, {:.3}, {} calls, {} tokens; the paper's scheme {} questions, {:.3}, {} calls, {} tokens",
@@ -124,7 +120,8 @@ fn a_kept_reply_is_not_paid_for_again() {
 fn a_budget_ends_a_run_politely() {
     let provider = faultless();
     let limit: u64 = 30_000;
-    let finished = host(&provider, &small_house(), &["--budget", &limit.to_string(), "--json"]).run().expect_code(0);
+    let finished =
+        host(&provider, &small_house(), &["--budget", &limit.to_string(), "--json"]).run().expect_code(0);
     let report = finished.json();
     assert_eq!(report["stopped"], "budget");
     assert!(tokens(&report) <= limit + 4 * 200, "{} tokens", tokens(&report));

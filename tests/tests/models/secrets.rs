@@ -39,8 +39,18 @@ fn a_key_is_in_nothing_that_a_run_leaves_behind() {
     });
     let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let arguments = [
-        "--db", &file("home.db"), "--report", &file("report.json"), "--html", &file("page.html"),
-        "--events", &file("events.jsonl"), "--record", &file("tape.jsonl"), "--gate", "always",
+        "--db",
+        &file("home.db"),
+        "--report",
+        &file("report.json"),
+        "--html",
+        &file("page.html"),
+        "--events",
+        &file("events.jsonl"),
+        "--record",
+        &file("tape.jsonl"),
+        "--gate",
+        "always",
     ];
     let finished = host(&provider, episode.path(), &arguments).env("RUST_LOG", "trace").run().expect_code(0);
     assert!(!finished.stdout.contains(KEY) && !finished.stderr.contains(KEY));
@@ -71,7 +81,8 @@ fn a_key_is_not_in_the_process_list() {
     let delay = std::time::Duration::from_millis(200);
     let provider = ScriptedProvider::start(Script { delay, ..Script::default() });
     let run = {
-        let program = host(&provider, episode.path(), &["--db", folder.path().join("home.db").to_str().unwrap()]);
+        let program =
+            host(&provider, episode.path(), &["--db", folder.path().join("home.db").to_str().unwrap()]);
         std::thread::spawn(move || program.run())
     };
     let mut seen = 0;

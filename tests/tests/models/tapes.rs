@@ -10,7 +10,11 @@ use super::{KEY, host};
 
 /// The report as it was written, but for the line that tells the seconds.
 fn without_seconds(report: &str) -> String {
-    report.lines().filter(|line| !line.trim_start().starts_with("\"seconds\":")).collect::<Vec<_>>().join("\n")
+    report
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("\"seconds\":"))
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 /// Byte for byte, faults and their notes included, with another number of conversations at once.
@@ -19,7 +23,10 @@ fn a_tape_plays_a_run_again_byte_for_byte() {
     let folder = TempDir::new().unwrap();
     let tape = folder.path().join("tape.jsonl");
     let provider = ScriptedProvider::start(Script {
-        faults: FaultPlan::share(0.2, vec![Fault::Prose, Fault::ScoresAsText, Fault::Empty, Fault::Status(400)]),
+        faults: FaultPlan::share(
+            0.2,
+            vec![Fault::Prose, Fault::ScoresAsText, Fault::Empty, Fault::Status(400)],
+        ),
         ..Script::default()
     });
     let arguments = ["--record", tape.to_str().unwrap(), "--json"];
@@ -46,7 +53,9 @@ fn a_conversation_that_is_not_on_the_tape_is_told() {
     let provider = super::faultless();
     let recorded = EpisodeBuilder::three_things().write();
     host(&provider, recorded.path(), &["--record", tape.to_str().unwrap()]).run().expect_code(0);
-    let other = EpisodeBuilder::three_things().object("4", "umbrella", [20.0, 0.0, 0.5]).write();
+    let mut other = EpisodeBuilder::three_things().object("4", "umbrella", [20.0, 0.0, 0.5]);
+    other.truth.as_mut().unwrap()["owners"]["4"] = serde_json::json!(["Mary"]);
+    let other = other.write();
     Program::new("host")
         .arg("--episode")
         .arg(other.path())

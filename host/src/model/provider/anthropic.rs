@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 
 use super::concessions::{Offer, Parameter};
-use super::{MOST_COMPLETION_TOKENS, TEMPERATURE, unique_id};
+use super::{MOST_COMPLETION_TOKENS, TEMPERATURE, echoed_name, unique_id};
 use crate::model::{
     ChatReply, ChatRequest, Ending, Message, Origin, TokenUsage, ToolArguments, ToolCall, ToolDefinition,
 };
@@ -69,7 +69,7 @@ fn echoed_call(call: &ToolCall) -> Value {
         ToolArguments::Object(arguments) => Value::Object(arguments.clone()),
         ToolArguments::Malformed(text) => json!({MALFORMED: text}),
     };
-    json!({"type": "tool_use", "id": call.id, "name": call.tool, "input": input})
+    json!({"type": "tool_use", "id": call.id, "name": echoed_name(&call.tool), "input": input})
 }
 
 fn result(call_id: &str, text: &str, is_error: bool) -> Value {

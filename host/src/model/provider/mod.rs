@@ -137,6 +137,17 @@ impl Default for ProviderSettings {
     }
 }
 
+/// A tool's name as providers take it back. A model may have invented one with letters that its own provider refuses,
+/// and no further word could be said in that conversation.
+fn echoed_name(tool: &str) -> String {
+    const LONGEST: usize = 64;
+    let allowed = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+    match tool.chars().take(LONGEST).map(|letter| if allowed(letter) { letter } else { '_' }).collect() {
+        name if String::is_empty(&name) => "nameless".to_owned(),
+        name => name,
+    }
+}
+
 /// A language model that is reached over HTTP.
 #[derive(Debug)]
 pub struct RemoteModel {

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 
 use super::concessions::{Offer, Parameter};
-use super::{MOST_COMPLETION_TOKENS, TEMPERATURE, unique_id};
+use super::{MOST_COMPLETION_TOKENS, TEMPERATURE, echoed_name, unique_id};
 use crate::model::{
     ChatReply, ChatRequest, Ending, Message, Origin, ReplyFormat, TokenUsage, ToolArguments, ToolCall,
     ToolDefinition,
@@ -77,7 +77,7 @@ fn echoed_call(call: &ToolCall) -> Value {
     json!({
         "id": call.id,
         "type": "function",
-        "function": {"name": call.tool, "arguments": call.arguments.to_text()},
+        "function": {"name": echoed_name(&call.tool), "arguments": call.arguments.to_text()},
     })
 }
 

@@ -175,3 +175,13 @@ proptest! {
         }
     }
 }
+
+#[rstest]
+#[case("nearby_objects", "nearby_objects")]
+#[case("functions.nearby objects", "functions_nearby_objects")]
+#[case("", "nameless")]
+#[case("öffne", "_ffne")]
+fn a_name_that_a_model_invented_can_be_sent_back(#[case] tool: &str, #[case] echoed: &str) {
+    assert_eq!(super::super::echoed_name(tool), echoed);
+    assert_eq!(super::super::echoed_name(&"x".repeat(100)).len(), 64);
+}
