@@ -9,8 +9,8 @@ mod tapes;
 
 use std::path::Path;
 
-use coin_tests::Program;
 use coin_tests::provider::{Script, ScriptedProvider};
+use coin_tests::{EpisodeBuilder, Program};
 use serde_json::Value;
 
 /// A key as providers give them; nothing but the request to the provider may hold it.
@@ -36,6 +36,28 @@ fn report(provider: &ScriptedProvider, episode: &Path, arguments: &[&str]) -> Va
 /// A provider that makes no mistakes and knows the key.
 fn faultless() -> ScriptedProvider {
     ScriptedProvider::start(Script { key: Some(KEY.to_owned()), ..Script::default() })
+}
+
+/// Bob's marker, Mary's mug and everybody's kettle, seen so seldom that a model is asked about each.
+fn seldom_seen() -> EpisodeBuilder {
+    let mut episode = EpisodeBuilder::new()
+        .object("1", "marker", [0.0, 0.0, 0.8])
+        .object("2", "mug", [4.0, 0.0, 0.8])
+        .object("3", "kettle", [8.0, 0.0, 0.8]);
+    for (id, class, who) in [
+        ("1", "Marker", ["Bob", "Bob", "Bob", "Mary"]),
+        ("2", "Mug", ["Mary", "Mary", "Tom", "Mary"]),
+        ("3", "Kettle", ["Bob", "Mary", "Tom", "Mary"]),
+    ] {
+        for (day, user) in who.iter().enumerate() {
+            let line = format!("2025-01-{} 08:00 {user} is using the {class}", 15 + day);
+            episode = episode.caption(id, &line);
+        }
+    }
+    episode.truth = Some(serde_json::json!({
+        "owners": {"1": ["Bob"], "2": ["Mary"], "3": ["Bob", "Mary", "Tom"]},
+    }));
+    episode
 }
 
 fn subset_accuracy(report: &Value) -> f64 {

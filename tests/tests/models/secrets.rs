@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::Path;
 
+use coin_tests::Program;
 use coin_tests::provider::{Fault, FaultPlan, Script, ScriptedProvider};
-use coin_tests::{EpisodeBuilder, Program};
 use tempfile::TempDir;
 
-use super::{KEY, host};
+use super::{KEY, host, seldom_seen};
 
 /// Every file below a folder that holds the key.
 fn files_with_the_key(folder: &Path) -> Vec<String> {
@@ -31,7 +31,7 @@ fn files_with_the_key(folder: &Path) -> Vec<String> {
 #[test]
 fn a_key_is_in_nothing_that_a_run_leaves_behind() {
     let folder = TempDir::new().unwrap();
-    let episode = EpisodeBuilder::three_things().write();
+    let episode = seldom_seen().write();
     let provider = ScriptedProvider::start(Script {
         key: Some(KEY.to_owned()),
         faults: FaultPlan::script(vec![Some(Fault::Status(500)), None, Some(Fault::Status(400))]),
@@ -77,7 +77,7 @@ fn no_argument_takes_a_key() {
 #[test]
 fn a_key_is_not_in_the_process_list() {
     let folder = TempDir::new().unwrap();
-    let episode = EpisodeBuilder::three_things().write();
+    let episode = seldom_seen().write();
     let delay = std::time::Duration::from_millis(200);
     let provider = ScriptedProvider::start(Script { delay, ..Script::default() });
     let run = {
