@@ -162,23 +162,17 @@ fn suitability(expectation: &Expectation, set: OwnerSet) -> f64 {
     set.iter().filter_map(|user| expectation.suitability.get(user.place())).product()
 }
 
-/// A language model's scores as weights of owner sets: `e(S) ∝ π(S) · ∏_{u∈S} s_u/b · ∏_{u∉S} (1−s_u)/(1−b)`, where b is
-/// the probability under π that a given member is an owner. The scores are read as odds against that base: a model that
-/// gives b to everybody has said nothing.
+/// A language model's scores as weights of owner sets: `e(S) ∝ π(S) · ∏_{u∈S} s_u · ∏_{u∉S} (1−s_u)`. A model is told to
+/// give one half where nothing speaks for or against a member, so the scores are odds against that: one half for
+/// everybody says nothing.
 struct ModelOpinion<'a> {
     scores: &'a [Score],
-    base: f64,
     sum: f64,
 }
 
 impl<'a> ModelOpinion<'a> {
     fn new(scores: &'a [Score], sets: &[OwnerSet], prior: impl Fn(OwnerSet) -> f64) -> Self {
-        // π treats members alike, so any of them shows the base.
-        let base = sets
-            .iter()
-            .filter(|set| UserIndex::new(0).is_some_and(|first| set.contains(first)))
-            .fold(0.0, |sum, &set| sum + prior(set));
-        let opinion = Self { scores, base, sum: 0.0 };
+        let opinion = Self { scores, sum: 0.0 };
         let sum = sets.iter().fold(0.0, |sum, &set| sum + opinion.of(set, prior(set)));
         Self { sum, ..opinion }
     }
@@ -187,8 +181,8 @@ impl<'a> ModelOpinion<'a> {
     fn of(&self, set: OwnerSet, prior: f64) -> f64 {
         let odds = self.scores.iter().enumerate().map(|(place, score)| {
             match UserIndex::new(place).is_some_and(|user| set.contains(user)) {
-                true => score.value() / self.base,
-                false => (1.0 - score.value()) / (1.0 - self.base),
+                true => score.value(),
+                false => 1.0 - score.value(),
             }
         });
         prior * odds.product::<f64>()

@@ -275,6 +275,7 @@ fn experiment(arguments: &ExperimentArguments) -> Result<(), Failure> {
         methods: methods.into_iter().map(Into::into).collect(),
         trials: usize::try_from(arguments.trials).unwrap_or(usize::MAX),
         seed: arguments.seed,
+        concurrency: arguments.model.concurrency,
         coverage: coverage.filter(|homes| homes.households > 0).collect(),
     };
     let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };

@@ -70,6 +70,10 @@ impl Chronicle {
                 self.end_of_pass();
                 self.narration.question_asked(*step, question);
             }
+            LogEvent::QuestionRecalled { step, question, answer, .. } => {
+                self.end_of_pass();
+                self.narration.question_recalled(*step, question, answer);
+            }
             LogEvent::AnswerRead { step, object_id, answer, answered_by, ownership, status, .. } => {
                 self.untold = Some(UntoldAnswer {
                     step: *step,

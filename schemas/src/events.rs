@@ -70,6 +70,17 @@ pub enum LogEvent {
         /// The question.
         question: String,
     },
+    /// A question that was put in an earlier part of the run; what became of it follows.
+    QuestionRecalled {
+        /// The number of the question, from 1.
+        step: usize,
+        /// The thing.
+        object_id: ObjectId,
+        /// The question.
+        question: String,
+        /// The answer; empty where there was none.
+        answer: String,
+    },
     /// A person answered.
     AnswerRead {
         /// The number of the question, from 1.

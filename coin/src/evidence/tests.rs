@@ -329,17 +329,17 @@ mod opinion_of_a_model {
         })
     }
 
-    /// By fractions, for three members without a session: π is 1/5 for each alone, 1/20 for each pair and 1/4 for all,
-    /// so b = 1/5 + 2/20 + 1/4 = 11/20. Scores .9, .3, .1 make e({0}) = 1/5 · (18/11) · (14/9) · 2 / Σ and so on; the
-    /// mixture 3/4·π + 1/4·e was evaluated with Python's `fractions`.
+    /// By fractions, for three members without a session: π is 1/5 for each alone, 1/20 for each pair and 1/4 for all.
+    /// Scores .9, .3, .1 make e({0}) = 1/5 · 9/10 · 7/10 · 9/10 / Σ and so on; the mixture 3/4·π + 1/4·e was evaluated with
+    /// Python's `fractions`.
     #[test]
-    fn is_mixed_into_the_prior_as_odds_against_its_base() {
+    fn is_mixed_into_the_prior_as_odds_against_one_half() {
         let found = with(&[0, 0, 0], &[0.9, 0.3, 0.1]);
         let expected = [
-            (vec![0], 236937.0 / 664820.0),
-            (vec![1], 106257.0 / 664820.0),
-            (vec![0, 1], 147837.0 / 2659280.0),
-            (vec![0, 1, 2], 104097.0 / 531856.0),
+            (vec![0], 4971.0 / 14240.0),
+            (vec![1], 2271.0 / 14240.0),
+            (vec![0, 1], 3351.0 / 56960.0),
+            (vec![0, 1, 2], 2271.0 / 11392.0),
         ];
         for (members, probability) in expected {
             let found = found.probability(set(&members));
@@ -348,7 +348,7 @@ mod opinion_of_a_model {
     }
 
     #[rstest]
-    #[case::of_the_base(&[0.55, 0.55, 0.55])]
+    #[case::of_one_half(&[0.5, 0.5, 0.5])]
     #[case::that_nobody_is_an_owner(&[0.0, 0.0, 0.0])]
     #[case::of_too_few_members(&[0.9, 0.1])]
     fn says_nothing(#[case] values: &[f64]) {

@@ -72,10 +72,11 @@ impl Run<'_> {
     async fn past_question(&mut self, object: &ObjectId) -> Result<Option<Event>, DriveError> {
         let Some(past) = self.driver.journal.past_question(object) else { return Ok(None) };
         let (PastQuestion::Answered { question, .. } | PastQuestion::Declined { question }) = &past;
-        self.driver.observer.observe(&LogEvent::QuestionAsked {
+        self.driver.observer.observe(&LogEvent::QuestionRecalled {
             step: question.step,
             object_id: object.clone(),
             question: question.question.clone(),
+            answer: question.answer.clone(),
         })?;
         match past {
             PastQuestion::Declined { question } => self.decline(question).map(Some),

@@ -63,7 +63,10 @@ impl Driver<'_> {
                     })?;
                 }
                 let inference = outcome?;
-                self.journal.inferred(&thing.id, &inference, self.roster)?;
+                // What was judged without the model for want of tokens is judged by it when the run goes on.
+                if !(self.steps.is_out_of_budget() && inference.problem.is_some()) {
+                    self.journal.inferred(&thing.id, &inference, self.roster)?;
+                }
                 events.push(self.note(&thing.id, inference)?);
             }
         }

@@ -23,7 +23,7 @@ use crate::calibrate::{HomeScoring, ScoredHome, score_homes};
 use crate::generate::{self, Protocol, RoutineSettings};
 use crate::model::ChatModel;
 use crate::parallel;
-use crate::run::{CONCURRENCY, default_scoring};
+use crate::run::default_scoring;
 
 /// The homes that thresholds are made from where none are given: those of the built-in calibration.
 const CALIBRATION_SEED: u64 = 1001;
@@ -108,7 +108,7 @@ pub(super) async fn measure(
         true => make(Protocol::Week, CALIBRATION_SEED, CALIBRATION_HOMES, folder.path())?,
         false => settings.calibrate_on.clone(),
     };
-    let calibrated_on = score(&calibrated_on, model, progress).await?;
+    let calibrated_on = score(&calibrated_on, settings, model, progress).await?;
     let promises = Promises::from_homes(calibrated_on.iter(), settings, model.name())?;
     let mut coverage = Vec::new();
     for &homes in &settings.coverage {
@@ -119,6 +119,7 @@ pub(super) async fn measure(
 
 async fn score(
     homes: &[PathBuf],
+    settings: &ExperimentSettings,
     model: &Arc<dyn ChatModel>,
     progress: &mut (dyn Progress + Send),
 ) -> Result<Vec<ScoredHome>, ExperimentError> {
@@ -127,7 +128,7 @@ async fn score(
         history: History::Whole,
         withheld: BTreeSet::new(),
         scoring: default_scoring(model.name()),
-        concurrency: CONCURRENCY,
+        concurrency: settings.concurrency,
     };
     let scored = score_homes(homes, &how, model, || progress.step()).await?;
     progress.end();
@@ -155,7 +156,7 @@ async fn of_kind(
 ) -> Result<Vec<Coverage>, ExperimentError> {
     let folder = TempDir::new()?;
     let homes = make(protocol, JUDGED_SEED, households, folder.path())?;
-    let judged = score(&homes, model, progress).await?;
+    let judged = score(&homes, settings, model, progress).await?;
     let same_kind = protocol == Protocol::Week && settings.calibrate_on.is_empty();
     let row = |guarantee, count: usize, things: usize, over_splits| {
         let (low, high) = clopper_pearson(count, things, INTERVAL_LEVEL);
@@ -184,7 +185,7 @@ async fn of_kind(
             row.over_splits = Some(mean);
         }
     }
-    let (wrong, things) = wrong_in_the_end(&homes, promises, settings.seed, model, progress).await?;
+    let (wrong, things) = wrong_in_the_end(&homes, promises, settings, model, progress).await?;
     rows.push(row(Guarantee::WrongInTheEnd, wrong, things, None));
     Ok(rows)
 }
@@ -217,17 +218,18 @@ fn over_splits(
 async fn wrong_in_the_end(
     homes: &[PathBuf],
     promises: &Promises,
-    seed: u64,
+    settings: &ExperimentSettings,
     model: &Arc<dyn ChatModel>,
     progress: &mut (dyn Progress + Send),
 ) -> Result<(usize, usize), ExperimentError> {
     let calibrations: Arc<Calibrations> =
         Arc::new([(default_kind(model.name()), Some(promises.all_owners.clone()))].into());
+    let (concurrency, seed) = (settings.concurrency, settings.seed);
     let jobs = homes.iter().cloned().map(|folder| {
         let (model, calibrations) = (Arc::clone(model), Arc::clone(&calibrations));
         async move {
             let home = load_home(&folder).await?;
-            let outcome = methods::run(Method::Coin, &home, model.as_ref(), &calibrations, seed)
+            let outcome = methods::run(Method::Coin, &home, model.as_ref(), &calibrations, concurrency, seed)
                 .await
                 .map_err(|source| ExperimentError::Episode { episode: folder, source: Box::new(source) })?;
             Ok::<_, ExperimentError>(wrong(&outcome, &home))

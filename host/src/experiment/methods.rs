@@ -20,7 +20,7 @@ use crate::driver::{Standing, Unobserved};
 use crate::home::Home;
 use crate::model::ChatModel;
 use crate::person::SimulatedPerson;
-use crate::run::{CONCURRENCY, Course, RunError, default_scoring, drive};
+use crate::run::{Course, RunError, default_scoring, drive};
 
 /// What came of one run of one method.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,11 +109,12 @@ pub(super) async fn run(
     judged: &JudgedHome,
     model: &dyn ChatModel,
     calibrations: &Calibrations,
+    concurrency: usize,
     seed: u64,
 ) -> Result<MethodOutcome, RunError> {
     let started = Instant::now();
     let mut outcome = match (method, variant(method)) {
-        (_, Some(variant)) => agent(variant, judged, model, calibrations, seed).await?,
+        (_, Some(variant)) => agent(variant, judged, model, calibrations, concurrency, seed).await?,
         (Method::Actowl, None) => actowl::run(judged, model, seed).await?,
         (Method::Frequency, None) => heuristic(judged, frequency),
         (_, None) => heuristic(judged, last_user),
@@ -127,6 +128,7 @@ async fn agent(
     judged: &JudgedHome,
     model: &dyn ChatModel,
     calibrations: &Calibrations,
+    concurrency: usize,
     seed: u64,
 ) -> Result<MethodOutcome, RunError> {
     let kind = variant.calibration(model.name());
@@ -142,7 +144,7 @@ async fn agent(
         reinference: variant.reinference,
     };
     let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
-    let course = Course::new(settings, kind.withheld, kind.scoring, CONCURRENCY);
+    let course = Course::new(settings, kind.withheld, kind.scoring, concurrency);
     let (outcome, cost) = drive(&home, course, model, &mut person, &mut Unobserved).await?;
     home.server.close().await;
     let owners = |standings: BTreeMap<ObjectId, Standing>| {

@@ -31,7 +31,7 @@ use crate::home::{self, HomeError};
 use crate::model::ChatModel;
 use crate::model::metered::Metered;
 use crate::parallel;
-use crate::run::{CONCURRENCY, RunError, default_scoring};
+use crate::run::{RunError, default_scoring};
 use methods::CalibrationKind;
 
 pub use tables::{summary, tables};
@@ -59,6 +59,8 @@ pub struct ExperimentSettings {
     pub trials: usize,
     /// The seed of the first trial.
     pub seed: u64,
+    /// How many conversations go on at once in each home.
+    pub concurrency: usize,
     /// On which homes the guarantees are measured.
     pub coverage: Vec<CoverageHomes>,
 }
@@ -153,13 +155,14 @@ pub async fn run(
     for home in &homes {
         for trial in 0..settings.trials {
             for &method in &settings.methods {
-                let (home, model) = (Arc::clone(home), Arc::clone(&model));
+                let (home, model, concurrency) = (Arc::clone(home), Arc::clone(&model), settings.concurrency);
                 let calibrations = Arc::clone(&calibrations);
                 let seed = settings.seed.wrapping_add(trial as u64);
                 jobs.push(async move {
-                    let outcome = methods::run(method, &home, model.as_ref(), &calibrations, seed)
-                        .await
-                        .map_err(|source| ExperimentError::Episode {
+                    let outcome =
+                        methods::run(method, &home, model.as_ref(), &calibrations, concurrency, seed)
+                            .await
+                            .map_err(|source| ExperimentError::Episode {
                             episode: home.folder.clone(),
                             source: Box::new(source),
                         })?;
@@ -257,7 +260,7 @@ async fn calibrations(
                     history: History::Whole,
                     withheld: kind.withheld.clone(),
                     scoring: kind.scoring,
-                    concurrency: CONCURRENCY,
+                    concurrency: settings.concurrency,
                 };
                 let made = calibrate_on(&settings, model, || progress.step()).await?;
                 progress.end();

@@ -44,6 +44,7 @@ fn settings(episodes: Vec<PathBuf>, methods: &[Method]) -> ExperimentSettings {
         methods: methods.iter().copied().collect(),
         trials: 2,
         seed: 5,
+        concurrency: 4,
         coverage: Vec::new(),
     }
 }

@@ -161,6 +161,19 @@ impl Narration {
         self.tell(&format!("\n{text}"));
     }
 
+    /// A question of an earlier part of the run, which nobody sees now. Where a person answers at the terminal the
+    /// answer is told as well, because it is not told with what came of it.
+    pub fn question_recalled(&mut self, step: usize, question: &str, answer: &str) {
+        let label = format!("Q{step}");
+        let question = plain_text(question.trim()).into_owned();
+        let mut rows = vec![(label.as_str(), question)];
+        if self.person == PersonKind::Terminal && !answer.is_empty() {
+            rows.push(("", format!("“{}”", plain_text(answer.trim()))));
+        }
+        let text = labelled(&rows, 2, 3, self.style.width);
+        self.tell(&format!("\n{text}"));
+    }
+
     /// An answer was read.
     pub fn answer_read(&mut self, read: &AnswerRead<'_>) {
         let speaker = read.answered_by.map(|name| format!("{}: ", plain_text(name.as_str())));

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use coin_tests::provider::{Script, ScriptedProvider};
-use coin_tests::{Program, small_house};
+use coin_tests::{Program, is_slow_run, small_house};
 use rstest::rstest;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -135,4 +135,27 @@ fn a_budget_ends_a_run_politely() {
         assert!(object["confidence"].as_f64().unwrap() > 0.0);
         assert!(object["problem"].as_str().unwrap().contains("judged by the evidence alone"), "{object}");
     }
+}
+
+/// With answers after 300 ms, four conversations at once, and thresholds from other homes.
+#[test]
+fn a_model_that_answers_after_300_ms_is_through_in_8_seconds() {
+    if cfg!(debug_assertions) || !is_slow_run("a model that answers after 300 ms") {
+        return;
+    }
+    let folder = TempDir::new().unwrap();
+    let calibration = calibrated(&faultless(), &folder, &[]);
+    let slow = ScriptedProvider::start(Script { delay: Duration::from_millis(300), ..Script::default() });
+    let arguments = ["--calibration", &calibration, "--concurrency", "4", "--json", "--quiet"];
+    let finished = host(&slow, &small_house(), &arguments).run().expect_code(0);
+    let report = finished.json();
+    println!(
+        "{} questions, {:.3}, {} calls, {:.2} s",
+        questions(&report).len(),
+        subset_accuracy(&report),
+        count(&report, "model_calls"),
+        finished.duration.as_secs_f64()
+    );
+    assert!((subset_accuracy(&report) - 1.0).abs() < f64::EPSILON);
+    assert!(finished.duration < Duration::from_secs(8), "{:?}", finished.duration);
 }

@@ -6,6 +6,7 @@ mod faults;
 mod interrupted;
 mod secrets;
 mod tapes;
+mod terminal;
 
 use std::path::Path;
 

@@ -88,6 +88,7 @@ fn the_mean_over_splits_is_a_share_of_the_things_that_were_left() {
         methods: BTreeSet::new(),
         trials: 1,
         seed: 0,
+        concurrency: 4,
         coverage: Vec::new(),
     };
     let means = over_splits(calibrated_on, judged, &settings, "a model").unwrap();
