@@ -46,8 +46,7 @@ fn it_has_exactly_the_fields_of_the_contract() {
             "object": {"id": "marker", "name": "Marker"},
             "owners": ["Mary"],
             "confidence": 1.0,
-            // Without a model's name there is no calibration to settle a thing by.
-            "settled": false,
+            "settled": true,
             "source": "inferred",
         })
     );

@@ -58,12 +58,18 @@ fn calibrated(provider: &ScriptedProvider, folder: &TempDir, arguments: &[&str])
 #[case::given(&["--context", "given"], 10)]
 #[case::given_in_batches(&["--context", "given", "--batch", "8"], 10)]
 #[case::tools(&["--context", "tools"], 5)]
+#[case::evidence(&["--estimator", "evidence"], 10)]
 fn it_takes_a_fraction_of_the_papers_calls_and_tokens(#[case] arguments: &[&str], #[case] part: u64) {
     let paper = the_papers_scheme();
     let provider = faultless();
     let folder = TempDir::new().unwrap();
-    let calibration = calibrated(&provider, &folder, arguments);
-    let ours = report(&provider, &small_house(), &[arguments, &["--calibration", &calibration]].concat());
+    // The evidence model's thresholds are those that the program brings along.
+    let calibration = match arguments.contains(&"evidence") {
+        true => Vec::new(),
+        false => vec!["--calibration".to_owned(), calibrated(&provider, &folder, arguments)],
+    };
+    let calibration: Vec<&str> = calibration.iter().map(String::as_str).collect();
+    let ours = report(&provider, &small_house(), &[arguments, &calibration].concat());
     provider.assert_no_violations();
     println!(
         "{arguments:?}: {} questions, {:.3}, {} calls, {} tokens; the paper's scheme {} questions, {:.3}, {} calls, {} tokens",

@@ -43,7 +43,8 @@ fn an_answer_is_taken_back_and_the_rest_comes_another_day() {
     assert_eq!((given[1].1, given[1].2.len()), ("", 0), "passed over");
     assert!(told.contains("The answer to Q1 is taken back.") && told.contains("--resume"), "{told}");
 
-    let (second, told) = sitting(&folder, "I don't know\nall of us\nTom\nTom\nTom\nTom\nTom\n", &["--resume"]);
+    let (second, told) =
+        sitting(&folder, "I don't know\nall of us\nTom\nTom\nTom\nTom\nTom\n", &["--resume"]);
     let all = answers(&second);
     assert_eq!(all[..2], given[..]);
     assert!(all.len() > 3, "{all:?}");

@@ -42,9 +42,11 @@ fn voids(calibration: &Calibration, report: &Report) -> Option<&'static str> {
     if calibration.samples == 0 {
         return Some("the calibration was made from no data. Make one with host calibrate");
     }
-    if (calibration.model.as_str(), calibration.scoring)
-        != scored_by(&report.model, report.parameters.scoring)
-    {
+    let (model, scoring) = scored_by(&report.model, report.parameters.scoring);
+    if calibration.model != model {
+        return Some("the thresholds were made for another model, whose scores mean something else");
+    }
+    if calibration.scoring != scoring {
         return Some("the thresholds were made for scores of another kind, which mean something else");
     }
     if calibration.withheld != report.parameters.withheld {

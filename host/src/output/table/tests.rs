@@ -292,6 +292,10 @@ fn nothing_follows_from_no_data() {
 
 #[rstest]
 #[case::of_another_model(|report: &mut Report| report.model = "gpt-4o".to_owned(), "another model")]
+#[case::scored_otherwise(
+    |report: &mut Report| report.parameters.scoring.batch = 8,
+    "scores of another kind"
+)]
 #[case::told_less(
     |report: &mut Report| report.parameters.withheld = [coin_schemas::report::Withheld::Usage].into(),
     "told more or less"

@@ -34,7 +34,8 @@ fn rendered(conversation: &[Message]) -> String {
 /// Has the marker, or the marker and the mug, scored, and shows the conversation.
 async fn inference(scoring: Scoring) -> String {
     let home = home().await;
-    let tools = vec![("nearby_objects", json!({"object_id": "3"})), ("similar_objects", json!({"object_id": "3"}))];
+    let tools =
+        vec![("nearby_objects", json!({"object_id": "3"})), ("similar_objects", json!({"object_id": "3"}))];
     let scores = json!({"Bob": 0.9, "Mary": 0.2, "Tom": 0.1});
     let (first, reply) = match (scoring.context, scoring.batch) {
         (ContextSource::Tools, _) => {

@@ -73,6 +73,7 @@ fn there_is_a_snapshot_of_every_tool() {
             "record_answer",
             "record_scores",
             "record_usage",
+            "retract_answer",
             "similar_objects"
         ]
     );
