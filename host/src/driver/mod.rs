@@ -162,12 +162,12 @@ impl<'a> Driver<'a> {
     /// Carries the agent from its start to its end.
     pub async fn run(self, agent: Agent) -> Result<Outcome, DriveError> {
         let run = Run { driver: self, agent, questions: Vec::new(), history: Vec::new(), open: Vec::new() };
-        run.to_its_end().await
+        run.finish().await
     }
 }
 
 impl Run<'_> {
-    async fn to_its_end(mut self) -> Result<Outcome, DriveError> {
+    async fn finish(mut self) -> Result<Outcome, DriveError> {
         let mut pass = 0;
         let mut effects = self.agent.handle(Event::Started)?;
         loop {
