@@ -97,7 +97,7 @@ fn model(arguments: &ModelArguments, seed: u64, db: Option<&Path>) -> Result<Arc
         cache: arguments.cache.as_deref().or(beside_db.as_deref()),
         record: arguments.record.as_deref(),
     };
-    choice::ready(&arguments.model, &settings).map_err(|error| Failure::Failed(error.to_string()))
+    choice::ready(&arguments.model, &settings).map_err(|error| failure(error.is_refusal(), &error))
 }
 
 /// The status of a program that Ctrl-C ended.

@@ -11,7 +11,7 @@ use thiserror::Error;
 use super::embedded::EmbeddedModel;
 use super::metered::{Metered, TokenBudget};
 use super::provider::{Provider, ProviderSettings, RemoteModel};
-use super::tape::{Cache, Recorder, Replay};
+use super::tape::{Cache, Recorder, Replay, TapeError};
 use super::{ChatModel, ModelError};
 
 /// A model by the name under which it is asked for.
@@ -53,6 +53,33 @@ impl FromStr for ModelChoice {
     }
 }
 
+/// Why a model cannot be made ready.
+#[derive(Debug, Error)]
+pub enum ReadyError {
+    /// The model itself cannot be used, such as without a key.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A tape, a cache or a recording is refused.
+    #[error(transparent)]
+    File(#[from] TapeError),
+    /// The recording would empty the tape before it is played.
+    #[error("--record and --model replay: name the same file, {}; give the recording another one", path.display())]
+    SameFile {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+impl ReadyError {
+    /// Whether what was given is at fault, so that the same call will fail again.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            Self::Model(_) => false,
+            Self::File(_) | Self::SameFile { .. } => true,
+        }
+    }
+}
+
 /// What is put around a model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelSettings<'a> {
@@ -73,7 +100,13 @@ pub struct ModelSettings<'a> {
 ///
 /// # Errors
 /// If the model cannot be used, such as without a key, or a file cannot.
-pub fn ready(choice: &ModelChoice, settings: &ModelSettings<'_>) -> Result<Arc<dyn ChatModel>, ModelError> {
+pub fn ready(choice: &ModelChoice, settings: &ModelSettings<'_>) -> Result<Arc<dyn ChatModel>, ReadyError> {
+    if let (ModelChoice::Replay(tape), Some(record)) = (choice, settings.record) {
+        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if real(tape) == real(record) {
+            return Err(ReadyError::SameFile { path: tape.clone() });
+        }
+    }
     let mut model: Arc<dyn ChatModel> = match choice {
         ModelChoice::Embedded => Arc::new(EmbeddedModel::default()),
         ModelChoice::Remote(provider, name) => {

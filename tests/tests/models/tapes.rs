@@ -75,6 +75,25 @@ fn a_file_that_is_no_tape_is_told() {
         .arg(small_house())
         .args(["--model", &format!("replay:{}", file.display())])
         .run()
-        .expect_code(1)
+        .expect_code(2)
         .expect_stderr(&["report.json"]);
+}
+
+/// The tape would be emptied before its first word.
+#[test]
+fn a_tape_is_not_recorded_over_while_it_plays() {
+    let folder = TempDir::new().unwrap();
+    let tape = folder.path().join("tape.jsonl");
+    let episode = EpisodeBuilder::three_things().write();
+    let provider = super::faultless();
+    host(&provider, episode.path(), &["--record", tape.to_str().unwrap()]).run().expect_code(0);
+    let before = fs::read(&tape).unwrap();
+    Program::new("host")
+        .arg("--episode")
+        .arg(episode.path())
+        .args(["--model", &format!("replay:{}", tape.display()), "--record", tape.to_str().unwrap()])
+        .run()
+        .expect_code(2)
+        .expect_stderr(&["the same file"]);
+    assert_eq!(fs::read(&tape).unwrap(), before);
 }
