@@ -7,6 +7,7 @@ use coin_schemas::events::LogEvent;
 use coin_schemas::household::ObjectId;
 use coin_schemas::report::Stopped;
 use futures::StreamExt;
+use tokio::sync::Semaphore;
 
 use super::{DriveError, Driver};
 use crate::estimation::Estimate;
@@ -37,12 +38,19 @@ impl Driver<'_> {
         }
         let estimation = self.estimation;
         let batches: Vec<Vec<_>> = waiting.chunks(estimation.batch()).map(<[_]>::to_vec).collect();
+        // All wait at once, and so many go on: a thing that takes long keeps nobody behind it from being judged.
+        let (window, going_on) = (batches.len().max(1), Semaphore::new(self.concurrency.max(1)));
         let mut results = futures::stream::iter(batches)
-            .map(|things| async move {
-                let estimates = estimation.infer(&things.iter().collect::<Vec<_>>()).await;
-                (things, estimates)
+            .map(|things| {
+                let going_on = &going_on;
+                async move {
+                    // The semaphore is never closed, so that every permit comes.
+                    let _permit = going_on.acquire().await;
+                    let estimates = estimation.infer(&things.iter().collect::<Vec<_>>()).await;
+                    (things, estimates)
+                }
             })
-            .buffered(self.concurrency.max(1));
+            .buffered(window);
         let stop = self.stop.clone();
         loop {
             let next = tokio::select! {
