@@ -11,7 +11,7 @@ use coin::calibration::{
 use coin::sharing::ShareThresholds;
 use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
 use coin_schemas::episode::Truth;
-use coin_schemas::report::{ContextSource, Estimator, Gate, Scoring, Withheld};
+use coin_schemas::report::{ContextSource, Estimator, Gate, Scoring, Stopped, Withheld};
 use coin_server::episode::LoadedEpisode;
 use thiserror::Error;
 
@@ -344,6 +344,9 @@ async fn score_loaded(
     };
     let course = Course::new(agent_settings, how.withheld.clone(), how.scoring, how.concurrency);
     let (outcome, _) = drive(&home, course, model, &mut Nobody, &mut Unobserved).await?;
+    if outcome.stopped == Stopped::Budget {
+        return Err(RunError::ScoredWithoutTheModel);
+    }
     let samples = owners
         .into_iter()
         .filter_map(|(object, owners)| {

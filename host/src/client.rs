@@ -169,6 +169,9 @@ impl ToolServer {
         })?;
         let mut command = tokio::process::Command::new(program);
         command.args(arguments);
+        // It ends with its standard input, and not with the Ctrl-C that ends a run in good order.
+        #[cfg(unix)]
+        command.process_group(0);
         let transport = TokioChildProcess::new(command)
             .map_err(|source| ServerError::Start { command: display.clone(), source })?;
         let client = Client

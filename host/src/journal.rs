@@ -106,6 +106,8 @@ struct Pass {
 pub struct Journal {
     file: Option<(PathBuf, File)>,
     past: VecDeque<Pass>,
+    /// The thing whose answer was taken back right before the run ended.
+    withdrawn: Option<ObjectId>,
 }
 
 /// How a run begins.
@@ -156,27 +158,35 @@ impl Journal {
             Err(TryLockError::Error(source)) => return Err(failed(source)),
         }
         let mut text = String::new();
-        let mut past = VecDeque::new();
+        let (mut past, mut withdrawn) = (VecDeque::new(), None);
         if beginning == Beginning::WhereItEnded {
-            file.read_to_string(&mut text).map_err(failed)?;
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes).map_err(failed)?;
             // A last line without its end was being written when the run crashed; nothing rests on it.
-            text.truncate(text.rfind('\n').map_or(0, |end| end + 1));
+            bytes.truncate(bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1));
+            text = String::from_utf8(bytes)
+                .map_err(|error| failed(std::io::Error::new(std::io::ErrorKind::InvalidData, error)))?;
             let entries = read_entries(&path, &text)?;
             if let Some((JournalEntry::Run(of_run), entries)) = entries.split_first() {
                 if let Some(difference) = difference(of_run, heading) {
                     return Err(JournalError::OtherRun { path, difference });
                 }
                 heading.answered.clone_from(&of_run.answered);
-                past = read_past(entries, roster)?;
+                (past, withdrawn) = read_past(entries, roster)?;
             }
         }
         file.set_len(text.len() as u64).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
-        let mut journal = Self { file: Some((path, file)), past };
+        let mut journal = Self { file: Some((path, file)), past, withdrawn };
         if text.is_empty() {
             journal.write(&JournalEntry::Run(heading.clone()))?;
         }
         Ok(journal)
+    }
+
+    /// The thing whose answer was taken back right before the run ended, so that the database may not know of it.
+    pub fn withdrawn(&self) -> Option<&ObjectId> {
+        self.withdrawn.as_ref()
     }
 
     /// What an earlier part of the run concluded of a thing in the pass that is under way.
@@ -284,10 +294,15 @@ fn read_entries(path: &Path, text: &str) -> Result<Vec<JournalEntry>, JournalErr
 }
 
 /// The passes of a run. What was taken back is left out, together with what was concluded after it.
-fn read_past(entries: &[JournalEntry], roster: &Roster) -> Result<VecDeque<Pass>, JournalError> {
+fn read_past(
+    entries: &[JournalEntry],
+    roster: &Roster,
+) -> Result<(VecDeque<Pass>, Option<ObjectId>), JournalError> {
+    let mut withdrawn = None;
     let mut passes = VecDeque::from([Pass::default()]);
     for entry in entries {
         let Some(pass) = passes.back_mut() else { break };
+        withdrawn = None;
         match entry {
             JournalEntry::Run(_) => {}
             JournalEntry::Inferred { object_id, scores, owner_sets, related, parts, problem } => {
@@ -320,9 +335,11 @@ fn read_past(entries: &[JournalEntry], roster: &Roster) -> Result<VecDeque<Pass>
             }
             JournalEntry::Undone => {
                 passes.pop_back();
-                if let Some(pass) = passes.back_mut() {
-                    pass.question = None;
-                }
+                let question = passes.back_mut().and_then(|pass| pass.question.take());
+                withdrawn = match question {
+                    Some(PastQuestion::Answered { question, .. }) => Some(question.object_id),
+                    Some(PastQuestion::Declined { .. }) | None => None,
+                };
             }
         }
     }
@@ -332,7 +349,7 @@ fn read_past(entries: &[JournalEntry], roster: &Roster) -> Result<VecDeque<Pass>
             *recorded = Recorded::Perhaps;
         }
     }
-    Ok(passes)
+    Ok((passes, withdrawn))
 }
 
 /// What keeps a run from going on with other settings; `None` where nothing does.

@@ -17,7 +17,7 @@ use coin_schemas::events::LogEvent;
 use coin_schemas::household::{ObjectId, Owners};
 use coin_schemas::journal::{JOURNAL_VERSION, JournalHeading};
 use coin_schemas::report::{Estimator, Gate, Parameters, Report, Scoring, Withheld};
-use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS};
+use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS, RetractAnswer, RetractAnswerResult};
 use coin_server::episode::{EpisodeError, LoadedEpisode};
 use thiserror::Error;
 use tokio_util::sync::CancellationToken;
@@ -155,6 +155,12 @@ pub enum RunError {
     /// The server failed.
     #[error(transparent)]
     Server(#[from] ServerError),
+    /// Not every thing was scored by the model that is calibrated.
+    #[error(
+        "the budget was spent before the model had scored every thing, and thresholds of its scores cannot be made from \
+         others; give a larger --budget (with --cache FILE nothing is paid for twice)"
+    )]
+    ScoredWithoutTheModel,
     /// The journal of the run is refused.
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -174,6 +180,7 @@ impl RunError {
             | Self::Server(_)
             | Self::Drive(_)
             | Self::Person(_)
+            | Self::ScoredWithoutTheModel
             | Self::Journal(JournalError::File { .. } | JournalError::Locked { .. }) => false,
             Self::Home(_)
             | Self::Truth(_)
@@ -339,7 +346,9 @@ impl Course {
         Self { stop, ..self }
     }
 
-    fn going_on(self, journal: Journal, heading: &JournalHeading) -> Self {
+    fn going_on(mut self, journal: Journal, heading: &JournalHeading) -> Self {
+        // Fewer questions may be allowed now, but those that were put stay put.
+        self.settings.max_questions = self.settings.max_questions.max(journal.past_questions().count());
         Self { journal, answered_before: Some(heading.answered.clone()), ..self }
     }
 
@@ -368,7 +377,15 @@ pub(crate) async fn drive(
     observer: &mut dyn Observer,
 ) -> Result<(Outcome, coin_schemas::report::Cost), DriveError> {
     let malformed = |error: RosterError| DriveError::Malformed(error.to_string());
-    let answered = course.answered(home).map_err(malformed)?;
+    let mut answered = course.answered(home).map_err(malformed)?;
+    if let (Some(object), Some(before)) = (course.journal.withdrawn(), &course.answered_before) {
+        // The run ended between taking the answer back and telling the server.
+        if home.answered.contains_key(object) && !before.contains_key(object) {
+            let arguments = RetractAnswer { object_id: object.to_string() };
+            let _: RetractAnswerResult = home.server.call("retract_answer", &arguments).await?;
+            answered.remove(object);
+        }
+    }
     let Course { settings, withheld, scoring, concurrency, journal, stop, .. } = course;
     let reinference = settings.reinference;
     let mut agent = Agent::new(settings, home.things.keys().cloned());

@@ -78,6 +78,7 @@ impl Run<'_> {
             question: question.question.clone(),
             answer: question.answer.clone(),
         })?;
+        self.driver.person.recall(object);
         match past {
             PastQuestion::Declined { question } => self.decline(question).map(Some),
             PastQuestion::Answered { question, recorded, owner_outside_household } => {
@@ -126,13 +127,25 @@ impl Run<'_> {
     async fn take_back(&mut self) -> Result<Option<ObjectId>, DriveError> {
         let (Some(agent), Some(question)) = (self.open.pop(), self.questions.pop()) else { return Ok(None) };
         self.driver.journal.undone()?;
-        self.agent = agent;
+        let after = std::mem::replace(&mut self.agent, agent);
         // The state before the question that is given up goes; that before the question that is put again stays.
         self.history.pop();
         if question.status == AnswerStatus::Answered {
             let arguments = RetractAnswer { object_id: question.object_id.to_string() };
             let _: RetractAnswerResult = self.driver.server.call("retract_answer", &arguments).await?;
         }
+        // What was inferred since rests on the answer.
+        let believed = |agent: &Agent, object: &ObjectId| {
+            agent.object(object).map(|state| state.distribution().cloned())
+        };
+        let changed: Vec<ObjectId> = self
+            .driver
+            .things
+            .keys()
+            .filter(|object| believed(&after, object) != believed(&self.agent, object))
+            .cloned()
+            .collect();
+        self.driver.record(&self.agent, &changed).await?;
         self.driver.observer.observe(&LogEvent::AnswerUndone {
             step: question.step,
             object_id: question.object_id.clone(),

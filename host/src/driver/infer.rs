@@ -39,7 +39,7 @@ impl Driver<'_> {
         let estimation = self.estimation;
         let batches: Vec<Vec<_>> = waiting.chunks(estimation.batch()).map(<[_]>::to_vec).collect();
         // All wait at once, and so many go on: a thing that takes long keeps nobody behind it from being judged.
-        let (window, going_on) = (batches.len().max(1), Semaphore::new(self.concurrency.max(1)));
+        let (pieces, going_on) = (batches.len(), Semaphore::new(self.concurrency.max(1)));
         let mut results = futures::stream::iter(batches)
             .map(|things| {
                 let going_on = &going_on;
@@ -50,9 +50,10 @@ impl Driver<'_> {
                     (things, estimates)
                 }
             })
-            .buffered(window);
+            .buffered(pieces.max(1));
         let stop = self.stop.clone();
-        loop {
+        // A pass that is complete is taken in whole; whoever asks next sees that the run is to stop.
+        for _ in 0..pieces {
             let next = tokio::select! {
                 biased;
                 () = stop.cancelled() => {

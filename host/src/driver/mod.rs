@@ -191,6 +191,11 @@ impl Run<'_> {
                             let standings = self.driver.standings(&self.agent);
                             self.history.push(standings);
                         }
+                        // Confidence without the model, for want of tokens, is no end of its own.
+                        let stopped = match stopped {
+                            Stopped::Confident if self.driver.steps.is_out_of_budget() => Stopped::Budget,
+                            stopped => stopped,
+                        };
                         let Self { agent, questions, history, .. } = self;
                         return Ok(Outcome { agent, questions, history, stopped });
                     }

@@ -19,12 +19,15 @@ pub(super) enum Basis {
     Context(GivenContext),
 }
 
+/// A model's common sense about a thing, and what was made good in it.
+pub(super) type Heard = (Vec<Score>, Option<String>);
+
 /// What is kept of things.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
     forgets: bool,
     things: Mutex<BTreeMap<ObjectId, (Basis, Inference)>>,
-    opinions: Mutex<BTreeMap<ObjectId, Vec<Score>>>,
+    opinions: Mutex<BTreeMap<ObjectId, Heard>>,
 }
 
 impl Memory {
@@ -44,13 +47,13 @@ impl Memory {
         self.things.lock().unwrap_or_else(PoisonError::into_inner).get(thing).cloned()
     }
 
-    pub(super) fn keep_opinion(&self, thing: &ObjectId, scores: &[Score]) {
+    pub(super) fn keep_opinion(&self, thing: &ObjectId, scores: &[Score], remark: Option<String>) {
         let mut opinions = self.opinions.lock().unwrap_or_else(PoisonError::into_inner);
-        opinions.insert(thing.clone(), scores.to_vec());
+        opinions.insert(thing.clone(), (scores.to_vec(), remark));
     }
 
     /// A model's common sense about a thing. It rests on nothing that an answer changes.
-    pub(super) fn opinion(&self, thing: &ObjectId) -> Option<Vec<Score>> {
+    pub(super) fn opinion(&self, thing: &ObjectId) -> Option<Heard> {
         self.opinions.lock().unwrap_or_else(PoisonError::into_inner).get(thing).cloned()
     }
 }

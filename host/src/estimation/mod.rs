@@ -86,7 +86,7 @@ impl<'a> Estimation<'a> {
     /// Takes over what an earlier part of the run concluded, so that the model is not asked for it again.
     pub fn remember(&self, object: &ObjectId, inference: &Inference) {
         if let Some(Parts { model: Some(scores), .. }) = &inference.parts {
-            self.memory.keep_opinion(object, scores);
+            self.memory.keep_opinion(object, scores, inference.problem.clone());
         }
     }
 
@@ -261,13 +261,11 @@ impl<'a> Estimation<'a> {
             }
         }
         let (mut failures, mut called) = (BTreeMap::new(), BTreeMap::new());
-        let mut remarks: BTreeMap<ObjectId, String> = BTreeMap::new();
         for (id, (tools, outcome)) in self.hear(&unheard).await {
             called.insert(id.clone(), tools);
             match outcome {
                 Ok(Scored { scores, remark, .. }) => {
-                    self.memory.keep_opinion(&id, &scores);
-                    remarks.extend(remark.map(|remark| (id, remark)));
+                    self.memory.keep_opinion(&id, &scores, remark);
                 }
                 Err(error) => {
                     failures.insert(id, error);
@@ -278,7 +276,7 @@ impl<'a> Estimation<'a> {
         for thing in things {
             let outcome = match failures.remove(&thing.id) {
                 Some(error) => self.stand_in(thing, error).await,
-                None => self.fuse(thing, remarks.remove(&thing.id)).await,
+                None => self.fuse(thing).await,
             };
             known.insert(thing.id.clone(), outcome);
         }
@@ -321,8 +319,9 @@ impl<'a> Estimation<'a> {
         heard
     }
 
-    async fn fuse(&self, thing: &TaskObject, problem: Option<String>) -> Result<Inference, StepError> {
-        let opinion = self.memory.opinion(&thing.id);
+    async fn fuse(&self, thing: &TaskObject) -> Result<Inference, StepError> {
+        let (opinion, problem) = self.memory.opinion(&thing.id).unzip();
+        let problem = problem.flatten();
         let context = self.context(thing, NO_EXAMPLES).await?;
         let fused = self.weigh(thing, &context, opinion.as_deref())?;
         let evidence = judge(&self.told, &thing.class, &context, Opinion::None, &self.parameters)

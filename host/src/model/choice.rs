@@ -62,8 +62,8 @@ pub enum ReadyError {
     /// A tape, a cache or a recording is refused.
     #[error(transparent)]
     File(#[from] TapeError),
-    /// The recording would empty the tape before it is played.
-    #[error("--record and --model replay: name the same file, {}; give the recording another one", path.display())]
+    /// The recording would empty what is to be played or kept.
+    #[error("--record names the same file as the tape or the cache, {}; give the recording another one", path.display())]
     SameFile {
         /// The file.
         path: PathBuf,
@@ -101,11 +101,13 @@ pub struct ModelSettings<'a> {
 /// # Errors
 /// If the model cannot be used, such as without a key, or a file cannot.
 pub fn ready(choice: &ModelChoice, settings: &ModelSettings<'_>) -> Result<Arc<dyn ChatModel>, ReadyError> {
-    if let (ModelChoice::Replay(tape), Some(record)) = (choice, settings.record) {
-        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        if real(tape) == real(record) {
-            return Err(ReadyError::SameFile { path: tape.clone() });
-        }
+    let read = match choice {
+        ModelChoice::Embedded => None,
+        ModelChoice::Remote(..) => settings.cache,
+        ModelChoice::Replay(tape) => Some(tape.as_path()),
+    };
+    if let Some(path) = read.filter(|path| settings.record.is_some_and(|record| real(path) == real(record))) {
+        return Err(ReadyError::SameFile { path: path.to_owned() });
     }
     let mut model: Arc<dyn ChatModel> = match choice {
         ModelChoice::Embedded => Arc::new(EmbeddedModel::default()),
@@ -134,6 +136,16 @@ pub fn ready(choice: &ModelChoice, settings: &ModelSettings<'_>) -> Result<Arc<d
         model = Arc::new(Recorder::create(model, file)?);
     }
     Ok(model)
+}
+
+/// A path by which files can be told apart, also one that is not there yet.
+fn real(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let within = |folder: PathBuf| path.file_name().map(|name| folder.join(name));
+    path.canonicalize()
+        .ok()
+        .or_else(|| folder.canonicalize().ok().and_then(within))
+        .unwrap_or_else(|| path.to_owned())
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ pub mod terminal;
 use std::fmt;
 
 use async_trait::async_trait;
-use coin_schemas::household::{Score, UserName};
+use coin_schemas::household::{ObjectId, Score, UserName};
 use coin_schemas::model::TaskObject;
 use thiserror::Error;
 
@@ -99,4 +99,8 @@ pub trait Person: Send {
     /// # Errors
     /// If the way to the person is broken. That nobody answers is no error, but a [`Response`].
     async fn ask(&mut self, question: &PutQuestion<'_>) -> Result<Response, PersonError>;
+
+    /// Hears that a question about this thing was put in an earlier part of the run. Who has prepared answers has given
+    /// one of them.
+    fn recall(&mut self, _object: &ObjectId) {}
 }

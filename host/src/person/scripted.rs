@@ -221,4 +221,10 @@ impl Person for ScriptedPerson {
         let prepared = self.responses.get_mut(&question.object.id).and_then(VecDeque::pop_front);
         Ok(prepared.unwrap_or(Response::Declined))
     }
+
+    fn recall(&mut self, object: &ObjectId) {
+        if let Some(responses) = self.responses.get_mut(object) {
+            responses.pop_front();
+        }
+    }
 }
