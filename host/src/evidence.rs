@@ -72,11 +72,11 @@ pub async fn context(
     Ok(GivenContext { usage, nearby_objects, similar_objects })
 }
 
-/// What lies near a thing, without whose it is.
-pub async fn surroundings(server: &ToolServer, thing: &ObjectId) -> Result<GivenContext, ServerError> {
-    let mut nearby_objects = nearby(server, thing).await?;
+/// What a context tells of where a thing lies: its neighbours, without whose they are.
+pub fn surroundings(context: &GivenContext) -> GivenContext {
+    let mut nearby_objects = context.nearby_objects.clone();
     nearby_objects.iter_mut().for_each(|neighbour| neighbour.known_ownership = None);
-    Ok(GivenContext { nearby_objects, ..GivenContext::default() })
+    GivenContext { nearby_objects, ..GivenContext::default() }
 }
 
 async fn usage(

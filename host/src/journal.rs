@@ -380,3 +380,6 @@ fn difference(of_run: &JournalHeading, now: &JournalHeading) -> Option<String> {
     }
     None
 }
+
+#[cfg(test)]
+mod tests;

@@ -157,7 +157,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
             true => ForeignCalibration::Used,
             false => ForeignCalibration::Refused,
         },
-        scoring: Some(scoring),
+        scoring,
         concurrency: arguments.model.concurrency,
         beginning: if arguments.resume { Beginning::WhereItEnded } else { Beginning::Anew },
         evidence: if page_file.is_some() { EvidenceKept::All } else { EvidenceKept::None },

@@ -11,7 +11,6 @@ mod tests;
 pub use json::{JsonFault, read_json};
 pub use sentence::{MOST_CHARACTERS, SentenceFault, read_sentence};
 
-use crate::output::plain_text;
 use thiserror::Error;
 
 /// The longest reply that is read, in bytes.
@@ -39,12 +38,4 @@ fn check_length(text: &str) -> Result<(), UnreadableReply> {
         bytes if bytes > MOST_BYTES => Err(UnreadableReply::TooLong { bytes }),
         _ => Ok(()),
     }
-}
-
-/// As much of foreign words as an error may repeat, in one line.
-pub(crate) fn excerpt(text: &str) -> String {
-    const LONGEST: usize = 200;
-    let cut = &text[..text.floor_char_boundary(LONGEST)];
-    let dots = if cut.len() < text.len() { "…" } else { "" };
-    format!("{}{dots}", plain_text(cut))
 }

@@ -88,8 +88,8 @@ pub struct RunSettings {
     pub withheld: BTreeSet<Withheld>,
     /// What to do with the calibration of another model.
     pub foreign_calibration: ForeignCalibration,
-    /// How the scores are made; `None` takes what suits the model.
-    pub scoring: Option<Scoring>,
+    /// How the scores are made.
+    pub scoring: Scoring,
     /// How many conversations go on at once.
     pub concurrency: usize,
     /// Whether an earlier run with the same database goes on.
@@ -215,8 +215,8 @@ pub async fn run_episode(
 ) -> Result<RunResult, RunError> {
     let started = Instant::now();
     // Everything that was given is checked before the first of it is imported.
-    let scoring = settings.scoring.unwrap_or_else(|| default_scoring(model.name()));
-    let calibration = calibration_for(settings, model.name(), scoring)?;
+    let scoring = settings.scoring;
+    let calibration = calibration_for(settings, model.name())?;
     let loaded = home::load(&settings.episode).await?;
     let truth = coin_server::episode::load_truth(&settings.episode, &loaded.episode)?;
     let mut person = person(settings, &loaded, truth.as_ref())?;
@@ -232,8 +232,7 @@ pub async fn run_episode(
     let mut course =
         Course::new(agent_settings, settings.withheld.clone(), scoring, settings.concurrency).until(stop);
     if let Some(db) = &settings.db {
-        let mut heading =
-            heading(settings, &home, model.name(), scoring, calibration.as_ref(), person.kind());
+        let mut heading = heading(settings, &home, model.name(), calibration.as_ref(), person.kind());
         let journal = Journal::open(db, settings.beginning, &mut heading, &home.roster)?;
         course = course.going_on(journal, &heading);
     }
@@ -292,7 +291,6 @@ fn heading(
     settings: &RunSettings,
     home: &Home,
     model: &str,
-    scoring: Scoring,
     calibration: Option<&Calibration>,
     person: PersonKind,
 ) -> JournalHeading {
@@ -313,7 +311,7 @@ fn heading(
         seed: settings.seed,
         reinference: settings.reinference,
         withheld: settings.withheld.iter().copied().collect(),
-        scoring,
+        scoring: settings.scoring,
         answers: person.as_str().to_owned(),
     }
 }
@@ -415,12 +413,8 @@ pub(crate) async fn drive(
 
 /// The calibration that was handed in, which must be the model's own and of a model that was told as much, or the one
 /// of the program that goes with the gate.
-fn calibration_for(
-    settings: &RunSettings,
-    model: &str,
-    scoring: Scoring,
-) -> Result<Option<Calibration>, CalibrationFileError> {
-    let (model, scoring) = scored_by(model, scoring);
+fn calibration_for(settings: &RunSettings, model: &str) -> Result<Option<Calibration>, CalibrationFileError> {
+    let (model, scoring) = scored_by(model, settings.scoring);
     let Some(calibration) = &settings.calibration else {
         return match model {
             EMBEDDED_MODEL if scoring.is_default() => {

@@ -1,7 +1,5 @@
 //! One pass of LLM-INFER over the things that need it.
 
-use std::collections::BTreeMap;
-
 use coin::agent::{Event, Inference};
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::ObjectId;
@@ -21,18 +19,14 @@ impl Driver<'_> {
         objects: Vec<ObjectId>,
     ) -> Result<Vec<Event>, DriveError> {
         self.observer.observe(&LogEvent::InferenceStarted { pass, objects: objects.clone() })?;
-        let mut past: BTreeMap<ObjectId, Inference> = BTreeMap::new();
-        for object in &objects {
-            if let Some(inference) = self.journal.past_inference(object) {
-                self.estimation.remember(object, &inference);
-                past.insert(object.clone(), inference);
-            }
-        }
         let mut events = Vec::new();
         let mut waiting = Vec::new();
         for object in &objects {
-            match past.remove(object) {
-                Some(inference) => events.push(self.note(object, inference)?),
+            match self.journal.past_inference(object) {
+                Some(inference) => {
+                    self.estimation.remember(object, &inference);
+                    events.push(self.note(object, inference)?);
+                }
                 None => waiting.push(self.thing(object)?.clone()),
             }
         }

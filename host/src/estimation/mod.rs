@@ -7,14 +7,14 @@ mod memory;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use coin::agent::{Inference, Parts};
 use coin::calibration::UNCALIBRATED_CONFIDENCE;
 use coin::common_sense::expect;
 use coin::evidence::{EvidenceParameters, Opinion};
 use coin::owners::OwnerSetDistribution;
-use coin::roster::Roster;
+use coin::roster::{Roster, RosterError};
 use coin_schemas::household::{ObjectId, Score};
 use coin_schemas::model::{GivenContext, Task, TaskObject, ThingInContext};
 use coin_schemas::report::{ContextSource, Estimator, Reinference, Withheld};
@@ -22,7 +22,7 @@ use jiff::civil::DateTime;
 
 use crate::client::ServerError;
 use crate::evidence::{context, judge, least_confidence, related, surroundings};
-use crate::model::ModelError;
+use crate::model::{ModelError, ToolArguments};
 use crate::steps::{CalledTool, InferStep, Scored, StepError, Steps};
 use memory::{Basis, Memory};
 
@@ -48,7 +48,7 @@ pub struct Estimate {
 /// Makes the scores of a run.
 pub struct Estimation<'a> {
     steps: &'a Steps<'a>,
-    withheld: std::collections::BTreeSet<Withheld>,
+    withheld: BTreeSet<Withheld>,
     /// The household as the evidence model is told of it.
     told: Roster,
     as_of: DateTime,
@@ -64,10 +64,10 @@ impl<'a> Estimation<'a> {
     /// If the household cannot be told without what is withheld, which is a fault of this program.
     pub fn new(
         steps: &'a Steps<'a>,
-        withheld: std::collections::BTreeSet<Withheld>,
+        withheld: BTreeSet<Withheld>,
         as_of: DateTime,
         reinference: Reinference,
-    ) -> Result<Self, coin::roster::RosterError> {
+    ) -> Result<Self, RosterError> {
         Ok(Self {
             told: Roster::new(steps.household())?,
             steps,
@@ -182,7 +182,7 @@ impl<'a> Estimation<'a> {
             return Ok(None);
         };
         for result in seen {
-            let crate::model::ToolArguments::Object(arguments) = result.call.arguments else {
+            let ToolArguments::Object(arguments) = result.call.arguments else {
                 return Ok(None);
             };
             let now = self.steps.server().call_raw(&result.call.tool, arguments).await?;
@@ -254,80 +254,80 @@ impl<'a> Estimation<'a> {
     /// The model's common sense, heard once for each thing, and the evidence as it is now, in one posterior. Where no
     /// opinion could unsettle what the evidence says the model is not asked.
     async fn fused(&self, things: &[&TaskObject]) -> Vec<Estimate> {
-        let mut unheard: Vec<&TaskObject> = Vec::new();
+        let mut known = BTreeMap::new();
+        let mut weighed: Vec<ThingInContext> = Vec::new();
         for thing in things {
-            if self.memory.opinion(&thing.id).is_none() && !self.is_decided(thing).await {
-                unheard.push(thing);
+            match self.context(thing, NO_EXAMPLES).await {
+                Ok(context) => weighed.push(ThingInContext { object: (*thing).clone(), context }),
+                Err(error) => {
+                    known.insert(thing.id.clone(), Err(error.into()));
+                }
             }
         }
-        let (mut failures, mut called) = (BTreeMap::new(), BTreeMap::new());
-        for (id, (tools, outcome)) in self.hear(&unheard).await {
-            called.insert(id.clone(), tools);
-            match outcome {
-                Ok(Scored { scores, remark, .. }) => {
-                    self.memory.keep_opinion(&id, &scores, remark);
+        let (called, mut failures) = self.hear(&weighed).await;
+        for ThingInContext { object, context } in &weighed {
+            let outcome = match failures.remove(&object.id) {
+                Some(error) => self.stand_in(object, error).await,
+                None => self.fuse(object, context),
+            };
+            known.insert(object.id.clone(), outcome);
+        }
+        in_order(things, known, called)
+    }
+
+    /// Has the model say what common sense says of the things that it has not spoken of yet and whose owners its word
+    /// could unsettle. The tools that it called, and where it failed.
+    async fn hear(
+        &self,
+        things: &[ThingInContext],
+    ) -> (BTreeMap<ObjectId, Vec<CalledTool>>, BTreeMap<ObjectId, StepError>) {
+        let unheard = things.iter().filter(|thing| {
+            self.memory.opinion(&thing.object.id).is_none() && !self.is_decided(&thing.object, &thing.context)
+        });
+        let mut called = BTreeMap::new();
+        let outcomes: BTreeMap<ObjectId, Result<Scored, StepError>> = match self.steps.scoring().context {
+            ContextSource::Tools => {
+                let mut outcomes = BTreeMap::new();
+                for ThingInContext { object, .. } in unheard {
+                    let step = self.steps.infer(&self.task(object, None)).await;
+                    called.insert(object.id.clone(), step.called);
+                    outcomes.insert(object.id.clone(), step.outcome);
                 }
+                outcomes
+            }
+            ContextSource::Given => {
+                let told = |thing: &ThingInContext| ThingInContext {
+                    object: thing.object.clone(),
+                    context: surroundings(&thing.context),
+                };
+                self.ask_about(&unheard.map(told).collect::<Vec<_>>()).await
+            }
+        };
+        let mut failures = BTreeMap::new();
+        for (id, outcome) in outcomes {
+            match outcome {
+                Ok(Scored { scores, remark, .. }) => self.memory.keep_opinion(&id, &scores, remark),
                 Err(error) => {
                     failures.insert(id, error);
                 }
             }
         }
-        let mut known = BTreeMap::new();
-        for thing in things {
-            let outcome = match failures.remove(&thing.id) {
-                Some(error) => self.stand_in(thing, error).await,
-                None => self.fuse(thing).await,
-            };
-            known.insert(thing.id.clone(), outcome);
-        }
-        in_order(things, known, called)
+        (called, failures)
     }
 
     /// Whether the evidence settles a thing whatever a model says. What cannot be told here fails where it is weighed.
-    async fn is_decided(&self, thing: &TaskObject) -> bool {
-        match self.context(thing, NO_EXAMPLES).await {
-            Ok(context) => least_confidence(&self.told, &thing.class, &context, &self.parameters)
-                .is_ok_and(|least| least >= DECIDED),
-            Err(_) => false,
-        }
+    fn is_decided(&self, thing: &TaskObject, context: &GivenContext) -> bool {
+        least_confidence(&self.told, &thing.class, context, &self.parameters)
+            .is_ok_and(|least| least >= DECIDED)
     }
 
-    /// Has the model say what common sense says of these things.
-    async fn hear(
-        &self,
-        things: &[&TaskObject],
-    ) -> BTreeMap<ObjectId, (Vec<CalledTool>, Result<Scored, StepError>)> {
-        let mut heard = BTreeMap::new();
-        if self.steps.scoring().context == ContextSource::Tools {
-            for thing in things {
-                let step = self.steps.infer(&self.task(thing, None)).await;
-                heard.insert(thing.id.clone(), (step.called, step.outcome));
-            }
-            return heard;
-        }
-        let mut asked = Vec::new();
-        for thing in things {
-            match surroundings(self.steps.server(), &thing.id).await {
-                Ok(context) => asked.push(ThingInContext { object: (*thing).clone(), context }),
-                Err(error) => {
-                    heard.insert(thing.id.clone(), (Vec::new(), Err(error.into())));
-                }
-            }
-        }
-        let scored = self.ask_about(&asked).await;
-        heard.extend(scored.into_iter().map(|(id, outcome)| (id, (Vec::new(), outcome))));
-        heard
-    }
-
-    async fn fuse(&self, thing: &TaskObject) -> Result<Inference, StepError> {
-        let (opinion, problem) = self.memory.opinion(&thing.id).unzip();
-        let problem = problem.flatten();
-        let context = self.context(thing, NO_EXAMPLES).await?;
-        let fused = self.weigh(thing, &context, opinion.as_deref())?;
-        let evidence = judge(&self.told, &thing.class, &context, Opinion::None, &self.parameters)
+    fn fuse(&self, thing: &TaskObject, context: &GivenContext) -> Result<Inference, StepError> {
+        let (opinion, remark) = self.memory.opinion(&thing.id).unzip();
+        let fused = self.weigh(thing, context, opinion.as_deref())?;
+        let evidence = judge(&self.told, &thing.class, context, Opinion::None, &self.parameters)
             .map_err(|error| StepError::Unusable { reason: error.to_string() })?;
         let parts = Parts { model: opinion, evidence: evidence.marginals(self.told.len()) };
-        Ok(Inference { parts: Some(parts), problem, ..self.inference(fused, &context) })
+        Ok(Inference { parts: Some(parts), problem: remark.flatten(), ..self.inference(fused, context) })
     }
 
     /// The evidence model speaks where the model failed, unless nothing can go on.

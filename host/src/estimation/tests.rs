@@ -18,6 +18,7 @@ use crate::model::{ChatModel, ChatReply, ChatRequest, Message};
 struct ForTom {
     tasks: Mutex<Vec<Task>>,
     fails_on: Option<&'static str>,
+    leaves_out: Option<&'static str>,
 }
 
 #[async_trait]
@@ -29,7 +30,10 @@ impl ChatModel for ForTom {
     async fn complete(&self, request: &ChatRequest<'_>) -> Result<ChatReply, ModelError> {
         let Some(Message::User { text }) = request.conversation.get(1) else { panic!("no task") };
         let task: Task = serde_json::from_str(text).unwrap();
-        let scores = json!({"Bob": 0.1, "Mary": 0.1, "Tom": 0.9});
+        let mut scores = json!({"Bob": 0.1, "Mary": 0.1, "Tom": 0.9});
+        if let (Some(name), Some(scores)) = (self.leaves_out, scores.as_object_mut()) {
+            scores.shift_remove(name);
+        }
         let (ids, reply) = match &task {
             Task::InferOwnership { object, .. } => {
                 (vec![object.id.clone()], json!({"ownership_distribution": scores}))
@@ -212,4 +216,16 @@ async fn where_the_model_fails_the_evidence_speaks_and_says_so(
     // A conversation about several things fails for all of them.
     let others = [0, 2].map(|place| inference(&results[0][place]).problem.is_some());
     assert_eq!(others, [batch > 1; 2]);
+}
+
+/// The 0 that a missing score counts as goes on weighing, and so the note of it stays.
+#[tokio::test]
+async fn the_note_of_a_missing_score_stays_as_long_as_it_counts() {
+    let model = ForTom { leaves_out: Some("Mary"), ..ForTom::default() };
+    let results =
+        passes(&model, scoring(Estimator::Fused, ContextSource::Given, 1), Reinference::default(), 2).await;
+    for estimate in results.iter().flatten() {
+        let note = inference(estimate).problem.as_deref();
+        assert_eq!(note, Some("the model gave no score for Mary, which counts as 0"));
+    }
 }

@@ -11,6 +11,7 @@ pub mod table;
 
 pub use events::{EventLog, EventLogError};
 pub use narration::{Changed, Narration};
+pub(crate) use plain_text::excerpt;
 pub use plain_text::plain_text;
 pub use printer::{Printer, Progress, ResultFormat};
 pub use style::{Colour, Style};

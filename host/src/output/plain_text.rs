@@ -14,6 +14,20 @@ pub fn plain_text(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.replace("\r\n", "\n").chars().map(shown_as).collect())
 }
 
+/// How much of foreign words an error repeats, in characters.
+const LONGEST_EXCERPT: usize = 200;
+
+/// As much of foreign words as an error may repeat: how they begin, in one line and safe to show.
+pub(crate) fn excerpt(text: &str) -> String {
+    // Far more than is shown, so that a long run of white space does not empty the excerpt.
+    let beginning: String = text.chars().take(20 * LONGEST_EXCERPT).collect();
+    let line = plain_text(&beginning).split_whitespace().collect::<Vec<_>>().join(" ");
+    if line.chars().count() <= LONGEST_EXCERPT {
+        return line;
+    }
+    line.chars().take(LONGEST_EXCERPT - 1).chain(['…']).collect()
+}
+
 fn shown_as(character: char) -> char {
     match character {
         '\n' | '\r' | '\t' | '\u{b}' | '\u{c}' | '\u{85}' | '\u{2028}' | '\u{2029}' => ' ',
@@ -55,6 +69,13 @@ mod tests {
             let shown = plain_text(&text).into_owned();
             prop_assert!(!shown.chars().any(char::is_control));
             prop_assert_eq!(plain_text(&shown), shown.as_str());
+        }
+
+        #[test]
+        fn an_excerpt_is_short_and_acts_on_nothing(text in "(\\PC|[\\x00-\\x{a0}]){0,900}") {
+            let shown = excerpt(&text);
+            prop_assert!(shown.chars().count() <= LONGEST_EXCERPT);
+            prop_assert!(!shown.chars().any(char::is_control));
         }
     }
 }

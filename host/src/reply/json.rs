@@ -8,7 +8,8 @@ use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Number, Value};
 use thiserror::Error;
 
-use super::{UnreadableReply, check_length, excerpt};
+use super::{UnreadableReply, check_length};
+use crate::output::excerpt;
 
 /// Why a reply is not the JSON that was asked for.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -213,7 +214,7 @@ fn reason(error: &serde_json::Error) -> String {
     let position = format!(" at line {} column {}", error.line(), error.column());
     let text = text.strip_suffix(&position).unwrap_or(&text);
     match text.strip_suffix("expected f64") {
-        Some(given) => format!("{}expected a number", excerpt(given)),
+        Some(given) => format!("{} expected a number", excerpt(given)),
         None => excerpt(text),
     }
 }

@@ -4,7 +4,8 @@ use pulldown_cmark::{Event, Parser};
 use serde::de::IgnoredAny;
 use thiserror::Error;
 
-use super::{UnreadableReply, check_length, excerpt};
+use super::{UnreadableReply, check_length};
+use crate::output::excerpt;
 
 /// The longest question that a person is asked, in characters.
 pub const MOST_CHARACTERS: usize = 300;

@@ -23,6 +23,7 @@ use crate::model::{
     ChatModel, ChatReply, ChatRequest, Ending, ModelError, ReplyFormat, ToolArguments, ToolCall,
     ToolDefinition,
 };
+use crate::output::excerpt;
 use crate::prompts;
 use crate::reply::{read_json, read_sentence};
 use conversation::{Conversation, Shown};
@@ -410,7 +411,7 @@ impl<'a> Steps<'a> {
         match &call.arguments {
             ToolArguments::Object(arguments) => self.server.call_raw(&call.tool, arguments.clone()).await,
             ToolArguments::Malformed(text) => {
-                refused(format!("the arguments must be a JSON object, not {}", excerpt(text)))
+                refused(format!("the arguments must be a JSON object, not {:?}", excerpt(text)))
             }
         }
     }
@@ -445,15 +446,6 @@ fn likeliest(scores: &Scores) -> Vec<&str> {
     let mut ranked: Vec<(&UserName, &Score)> = scores.iter().collect();
     ranked.sort_by(|left, right| right.1.value().total_cmp(&left.1.value()));
     ranked.into_iter().take(2).map(|(name, _)| name.as_str()).collect()
-}
-
-/// As much of a text as an error may quote.
-fn excerpt(text: &str) -> String {
-    const LONGEST: usize = 200;
-    if text.len() <= LONGEST {
-        return format!("{text:?}");
-    }
-    format!("{:?} and {} bytes more", &text[..text.floor_char_boundary(LONGEST)], text.len() - LONGEST)
 }
 
 #[cfg(test)]

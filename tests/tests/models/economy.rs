@@ -125,9 +125,13 @@ fn a_kept_reply_is_not_paid_for_again() {
 #[test]
 fn a_budget_ends_a_run_politely() {
     let provider = faultless();
+    let folder = TempDir::new().unwrap();
+    let db = folder.path().join("home.db");
+    let db = db.to_str().unwrap();
     let limit: u64 = 30_000;
-    let finished =
-        host(&provider, &small_house(), &["--budget", &limit.to_string(), "--json"]).run().expect_code(0);
+    let finished = host(&provider, &small_house(), &["--budget", &limit.to_string(), "--json", "--db", db])
+        .run()
+        .expect_code(0);
     let report = finished.json();
     assert_eq!(report["stopped"], "budget");
     assert!(tokens(&report) <= limit + 4 * 200, "{} tokens", tokens(&report));
@@ -141,6 +145,29 @@ fn a_budget_ends_a_run_politely() {
         assert!(object["confidence"].as_f64().unwrap() > 0.0);
         assert!(object["problem"].as_str().unwrap().contains("judged by the evidence alone"), "{object}");
     }
+    finished.expect_stderr(&["--resume", db]);
+    // With more to spend the run goes on to where it would have come without a budget.
+    let resumed = super::report(&provider, &small_house(), &["--db", db, "--resume"]);
+    assert_eq!(without_cost(resumed), without_cost(super::report(&provider, &small_house(), &[])));
+}
+
+/// Thresholds of a model are not made from scores that another one stood in with.
+#[test]
+fn a_budget_that_is_spent_ends_a_calibration() {
+    let provider = faultless();
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("calibration.json");
+    Program::new("host")
+        .args(["calibrate", "--quiet", "--model", "openai:scripted", "--budget", "5_000", "--out"])
+        .arg(&file)
+        .arg("--episode")
+        .arg(small_house())
+        .env("OPENAI_BASE_URL", provider.openai_url())
+        .env("OPENAI_API_KEY", KEY)
+        .run()
+        .expect_code(1)
+        .expect_stderr(&["the budget was spent", "--budget"]);
+    assert!(!file.exists());
 }
 
 /// With answers after 300 ms, four conversations at once, and thresholds from other homes.

@@ -43,14 +43,18 @@ impl Home {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        let started = Instant::now();
-        while provider.request_count() < requests {
-            assert!(started.elapsed() < Duration::from_secs(120), "the provider was not asked so often");
-            std::thread::sleep(Duration::from_millis(2));
-        }
+        wait_for_requests(provider, requests);
         let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
         assert!(killed.success());
         child.wait_with_output().unwrap()
+    }
+}
+
+fn wait_for_requests(provider: &ScriptedProvider, requests: usize) {
+    let started = Instant::now();
+    while provider.request_count() < requests {
+        assert!(started.elapsed() < Duration::from_secs(120), "the provider was not asked so often");
+        std::thread::sleep(Duration::from_millis(2));
     }
 }
 
@@ -160,6 +164,71 @@ fn more_questions_may_be_allowed_later() {
     assert_eq!(asked(&resumed), asked(&whole));
     assert_eq!(asked(&resumed).len().to_string(), all);
     assert_eq!(resumed["curve"], whole["curve"]);
+}
+
+/// Questions that were put stay put.
+#[test]
+fn fewer_questions_may_be_allowed_later() {
+    let home = Home::new();
+    let provider = faultless();
+    let whole = report(&provider, &small_house(), &["--db", &home.db()]);
+    let arguments = ["--db", &home.db(), "--resume", "--max-questions", "1"];
+    let resumed = report(&provider, &small_house(), &arguments);
+    assert_eq!((&resumed["questions"], &resumed["curve"]), (&whole["questions"], &whole["curve"]));
+}
+
+/// A file of answers goes on where it was, too.
+#[test]
+fn prepared_answers_are_not_given_twice() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("answers.jsonl");
+    let lines: String = (1..=34)
+        .flat_map(|thing| {
+            ["I don't know", "Bob's"]
+                .map(|answer| format!("{{\"object_id\": \"{thing}\", \"answer\": \"{answer}\"}}\n"))
+        })
+        .collect();
+    fs::write(&file, lines).unwrap();
+    let answers = file.to_str().unwrap();
+    let run = |db: &str, more: &[&str]| {
+        let arguments = [&["--model", "embedded", "--answers", answers, "--db", db][..], more].concat();
+        let program = Program::new("host").arg("--episode").arg(small_house()).args(arguments);
+        program.args(["--json", "--quiet"]).run().expect_code(0).json()
+    };
+    let (one, two) = (Home::new(), Home::new());
+    let whole = run(&one.db(), &[]);
+    run(&two.db(), &["--max-questions", "7"]);
+    assert_eq!(without_cost(run(&two.db(), &["--resume"])), without_cost(whole));
+}
+
+/// Ctrl-C at a terminal reaches every program that it started; the server is still there to be told what was learnt.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_a_server_of_its_own_to_the_end() {
+    use std::os::unix::process::CommandExt;
+
+    let home = coin_tests::Home::import(&small_house());
+    let provider = slow();
+    let server = format!("'{}' --db '{}'", binary("coin-server").display(), home.db().display());
+    let child = Command::new(binary("host"))
+        .arg("--episode")
+        .arg(small_house())
+        .args(["--model", "openai:scripted", "--json", "--server", &server])
+        .env("OPENAI_BASE_URL", provider.openai_url())
+        .env("OPENAI_API_KEY", KEY)
+        .process_group(0)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_for_requests(&provider, 30);
+    let group = format!("-{}", child.id());
+    assert!(Command::new("kill").args(["-INT", "--", &group]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["stopped"], "interrupted");
 }
 
 #[rstest]

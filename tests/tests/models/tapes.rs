@@ -97,3 +97,17 @@ fn a_tape_is_not_recorded_over_while_it_plays() {
         .expect_stderr(&["the same file"]);
     assert_eq!(fs::read(&tape).unwrap(), before);
 }
+
+/// Nor is the file in which replies are kept: what was paid for would be gone.
+#[test]
+fn a_cache_is_not_recorded_over() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("replies.jsonl");
+    let provider = super::faultless();
+    let arguments = ["--cache", file.to_str().unwrap(), "--record", file.to_str().unwrap()];
+    host(&provider, &small_house(), &arguments)
+        .run()
+        .expect_code(2)
+        .expect_stderr(&["the same file", "--record"]);
+    assert!(!file.exists() && provider.request_count() == 0);
+}

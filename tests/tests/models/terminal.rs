@@ -55,16 +55,43 @@ fn an_answer_is_taken_back_and_the_rest_comes_another_day() {
     assert!(told.contains("Q1") && told.contains("Mary and Tom"), "{told}");
 }
 
-/// What was taken back is not believed any more, and the history knows of it.
+/// What was taken back is not believed any more, nor is what was inferred from it.
 #[test]
-fn an_answer_that_was_taken_back_is_no_longer_known_to_the_server() {
+fn an_answer_that_was_taken_back_leaves_nothing_behind() {
     let folder = TempDir::new().unwrap();
-    let (report, _) = sitting(&folder, "Bob\nundo\nskip\nstop\n", &[]);
-    let thing = report["questions"][0]["object_id"].as_str().unwrap().to_owned();
+    let (report, told) = sitting(&folder, "Mary and Tom\nundo\nskip\nstop\n", &[]);
+    assert!(told.contains("This also changes") || told.contains("taken back"), "{told}");
     let db = folder.path().join("home.db");
     let mut server = ServerProcess::start(["--db".as_ref(), db.as_os_str()], Era::Legacy);
     let listed = server.ok("list_objects", json!({"limit": 500}));
-    let objects = listed["objects"].as_array().unwrap();
-    let object = objects.iter().find(|object| object["id"] == thing.as_str()).unwrap();
-    assert_eq!(object["source"], "inferred");
+    for object in listed["objects"].as_array().unwrap() {
+        assert_eq!(object["source"], "inferred", "{object}");
+        let reported = report["objects"].as_array().unwrap();
+        let reported = reported.iter().find(|reported| reported["id"] == object["id"]).unwrap();
+        assert_eq!(object["confidence"], reported["confidence"], "{object}");
+    }
+}
+
+/// The run may end between the journal and the database; then the server is told when the run goes on.
+#[test]
+fn an_answer_that_was_taken_back_right_before_a_crash_is_taken_back() {
+    let folder = TempDir::new().unwrap();
+    let (report, _) = sitting(&folder, "Bob\nundo\nstop\n", &[]);
+    assert_eq!(report["questions"], json!([]));
+    let db = folder.path().join("home.db");
+    let listed = |id: &str| -> Value {
+        let mut server = ServerProcess::start(["--db".as_ref(), db.as_os_str()], Era::Legacy);
+        let listed = server.ok("list_objects", json!({"limit": 500}));
+        listed["objects"].as_array().unwrap().iter().find(|object| object["id"] == id).unwrap().clone()
+    };
+    let frying_pan = "6";
+    let mut server = ServerProcess::start(["--db".as_ref(), db.as_os_str()], Era::Legacy);
+    let answer =
+        json!({"object_id": frying_pan, "question": "?", "answer": "Bob", "ownership": {"Bob": true}});
+    server.ok("record_answer", answer);
+    drop(server);
+    assert_eq!(listed(frying_pan)["source"], "answer");
+    let (resumed, _) = sitting(&folder, "stop\n", &["--resume"]);
+    assert_eq!(resumed["questions"], json!([]));
+    assert_eq!(listed(frying_pan)["source"], "inferred");
 }

@@ -7,10 +7,7 @@ use std::time::Duration;
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::output::plain_text;
-
-/// How much of a server's words an error quotes, in characters.
-const LONGEST_EXCERPT: usize = 200;
+use crate::output::excerpt;
 
 /// How an attempt failed. No text in it holds the key: what comes from a server is cleared of it before.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -169,17 +166,6 @@ impl Failure {
             _ => None,
         }
     }
-}
-
-/// How a text begins, in one line and without characters that would act on a terminal.
-fn excerpt(text: &str) -> String {
-    // Far more than is shown, so that a long run of white space does not empty the excerpt.
-    let beginning: String = text.chars().take(20 * LONGEST_EXCERPT).collect();
-    let line = plain_text(&beginning).split_whitespace().collect::<Vec<_>>().join(" ");
-    if line.chars().count() <= LONGEST_EXCERPT {
-        return line;
-    }
-    line.chars().take(LONGEST_EXCERPT - 1).chain(['…']).collect()
 }
 
 /// What lies at the bottom of an error. The upper layers only say that a request failed, and name the URL.

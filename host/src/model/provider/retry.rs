@@ -32,7 +32,9 @@ impl Default for RetryPolicy {
             retries: 3,
             base: Duration::from_millis(500),
             longest_wait: Duration::from_secs(60),
-            breaker_failures: 8,
+            // As many as the four calls that go on at once make before they give up, so that a server that is away for a
+            // second is waited for and not left alone.
+            breaker_failures: 16,
             breaker_pause: Duration::from_secs(30),
         }
     }

@@ -13,7 +13,7 @@ use coin_schemas::tape::{Exchange, Fingerprint, Outcome};
 use super::lines::{Line, next_line, read_exchange, read_header};
 use super::{TapeError, fingerprint, open_private};
 use crate::model::{ChatModel, ChatReply, ChatRequest, Message, ModelError, Origin};
-use crate::reply::excerpt;
+use crate::output::excerpt;
 
 /// A model that says again what another one said, without it.
 ///

@@ -227,7 +227,7 @@ async fn arguments_that_are_no_json_are_answered_in_words() {
     assert!(infer(&model).await.0.outcome.is_ok());
     let conversation = model.last_shown();
     let results = tool_results(&conversation);
-    assert_eq!(results, [("the arguments must be a JSON object, not \"{\\\"limit\\\": \"", true)]);
+    assert_eq!(results, [("the arguments must be a JSON object, not \"{\\\"limit\\\":\"", true)]);
 }
 
 /// Where scores are fused the model is not shown what the evidence model weighs: it would count twice.

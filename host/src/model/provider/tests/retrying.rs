@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::time::{Duration, SystemTime};
 
-use proptest::prelude::*;
 use reqwest::header::{HeaderMap, HeaderName, HeaderValue};
 use rstest::rstest;
 use tokio::time::Instant;
@@ -107,13 +106,4 @@ fn the_pause_is_read(#[case] headers: &[(&'static str, &'static str)], #[case] m
     let expected =
         milliseconds.map(|number| u64::try_from(number).map_or(Duration::MAX, Duration::from_millis));
     assert_eq!(retry_after(&headers, now), expected);
-}
-
-proptest! {
-    #[test]
-    fn an_excerpt_is_short_and_acts_on_nothing(text in "(\\PC|[\\x00-\\x{a0}]){0,900}") {
-        let Failure::Garbled { excerpt, .. } = Failure::garbled("", &text) else { unreachable!() };
-        prop_assert!(excerpt.chars().count() <= 200);
-        prop_assert!(!excerpt.chars().any(char::is_control));
-    }
 }

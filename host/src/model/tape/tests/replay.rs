@@ -95,7 +95,7 @@ async fn a_request_that_is_not_on_the_tape_is_described() {
     ask_question about thing 7 (mug): the episode, the settings or the program differ from those of the recording; use the same ones, or record anew with --record FILE
     read_answer "My \"own\"": the episode, the settings or the program differ from those of the recording; use the same ones, or record anew with --record FILE
     judge_sharing of 2 classes: the episode, the settings or the program differ from those of the recording; use the same ones, or record anew with --record FILE
-    something else and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and s…: the episode, the settings or the program differ from those of the recording; use the same ones, or record anew with --record FILE
+    something else and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and so on and …: the episode, the settings or the program differ from those of the recording; use the same ones, or record anew with --record FILE
     "#);
 }
 
