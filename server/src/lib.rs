@@ -12,6 +12,7 @@ pub mod store;
 #[cfg(test)]
 mod test_home;
 mod tools;
+pub mod transport;
 
 pub use service::{CallError, ServiceOptions, service};
 pub use tools::{ToolSelection, UnknownTool};

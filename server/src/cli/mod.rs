@@ -1,19 +1,15 @@
-//! The command line of `coin-server`.
+//! The command line of `coin-server`: one file for each command.
+
+mod import;
+mod serve;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use directories::ProjectDirs;
-use rmcp::ServiceExt;
-use rmcp::service::ServerInitializeError;
-use rmcp::transport::io::stdio_pipes;
 
-use crate::episode;
-use crate::service::{CoinService, ServiceOptions, service};
 use crate::store::{Access, Store};
-use crate::tools::ToolSelection;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,36 +27,13 @@ struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
-    serve: Serve,
-}
-
-#[derive(Debug, Args)]
-struct Serve {
-    /// The home's database; it is created where it is missing [default: home.db in the user's data folder]
-    #[arg(long, value_name = "FILE")]
-    db: Option<PathBuf>,
-    /// Offer only the tools that look, and write nothing to the database
-    #[arg(long)]
-    read_only: bool,
-    /// The tools to offer: all, core (those that a program with an ownership loop of its own needs), or names
-    #[arg(long, value_name = "all|core|NAME,…", default_value = "all")]
-    tools: ToolSelection,
+    serve: serve::Serve,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Import a recorded episode into a database, all of it or nothing
-    Import(Import),
-}
-
-#[derive(Debug, Args)]
-struct Import {
-    /// The episode's folder: it holds an episode.json
-    #[arg(long, value_name = "DIR")]
-    episode: PathBuf,
-    /// The database; it is created where it is missing [default: home.db in the user's data folder]
-    #[arg(long, value_name = "FILE")]
-    db: Option<PathBuf>,
+    Import(import::Import),
 }
 
 /// How the program ends.
@@ -101,8 +74,8 @@ pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     start_log();
     let outcome = match &arguments.command {
-        Some(Command::Import(import)) => run_import(import),
-        None => run_server(&arguments.serve),
+        Some(Command::Import(import)) => import::run(import),
+        None => serve::run(&arguments.serve),
     };
     match outcome {
         Ok(()) => Exit::Done.into(),
@@ -143,42 +116,4 @@ fn open(database: Option<&Path>, access: Access) -> Result<Store, Failure> {
         None => default_database()?,
     };
     Store::open(&path, access).map_err(refused)
-}
-
-fn run_import(import: &Import) -> Result<(), Failure> {
-    let loaded = episode::load(&import.episode).map_err(refused)?;
-    let store = open(import.db.as_deref(), Access::ReadWrite)?;
-    let summary = store.import(&loaded).map_err(|source| match source {
-        other_home @ crate::store::StoreError::OtherHome { .. } => refused(other_home),
-        other => failed(other),
-    })?;
-    say(&format!(
-        "Imported {:?}: users {}, objects {}, captions {} new ({} without a known person) and {} already there.",
-        loaded.episode.name,
-        summary.users,
-        summary.objects,
-        summary.usage.recorded,
-        summary.usage.unattributed,
-        summary.usage.duplicates,
-    ));
-    Ok(())
-}
-
-fn run_server(serve: &Serve) -> Result<(), Failure> {
-    let access = if serve.read_only { Access::ReadOnly } else { Access::ReadWrite };
-    let store = open(serve.db.as_deref(), access)?;
-    let options = ServiceOptions { tools: serve.tools.clone() };
-    let service = service(Arc::new(store), options);
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(failed)?;
-    runtime.block_on(serve_standard_streams(service))
-}
-
-/// Serves until the client closes its end; answers that are under way are still sent.
-async fn serve_standard_streams(service: CoinService) -> Result<(), Failure> {
-    match service.serve(stdio_pipes()).await {
-        Ok(running) => running.waiting().await.map(drop).map_err(failed),
-        // A client that only looks whether the program starts says nothing and leaves.
-        Err(ServerInitializeError::ConnectionClosed(_)) => Ok(()),
-        Err(source) => Err(failed(source)),
-    }
 }

@@ -1,0 +1,3 @@
+//! How a service reaches its clients.
+
+pub mod stdio;
