@@ -1,5 +1,7 @@
 //! The MCP service: what a client sees of the tools.
 
+mod work;
+
 use std::sync::Arc;
 
 use rmcp::model::{
@@ -79,15 +81,26 @@ impl CoinService {
     /// # Errors
     /// If there is no such tool, or if it refuses the call; the text says why.
     pub fn call(&self, tool: &str, arguments: JsonObject) -> Result<Value, CallError> {
-        let tool = self.tools.get(tool).ok_or_else(|| CallError::Unknown(self.tools.unknown(tool)))?;
-        tool.call(&self.store, arguments).map_err(|error| CallError::Refused(error.to_string()))
+        self.call_in(&self.store, tool, arguments)
     }
 
-    /// Runs a tool on a thread that may wait. A tool that panics is answered like one that failed.
-    async fn run(&self, request: CallToolRequestParams) -> Result<CallToolResult, ErrorData> {
+    fn call_in(&self, store: &Store, tool: &str, arguments: JsonObject) -> Result<Value, CallError> {
+        let tool = self.tools.get(tool).ok_or_else(|| CallError::Unknown(self.tools.unknown(tool)))?;
+        tool.call(store, arguments).map_err(|error| CallError::Refused(error.to_string()))
+    }
+
+    /// Runs a tool. One that panics is answered like one that failed.
+    async fn run(
+        &self,
+        request: CallToolRequestParams,
+        context: &RequestContext<RoleServer>,
+    ) -> Result<CallToolResult, ErrorData> {
         let service = self.clone();
         let arguments = request.arguments.unwrap_or_default();
-        let outcome = tokio::task::spawn_blocking(move || service.call(&request.name, arguments)).await;
+        let outcome = work::run(context, move |call| {
+            service.call_in(&service.store.during(call), &request.name, arguments)
+        })
+        .await;
         match outcome {
             Ok(Ok(result)) => Ok(CallToolResult::structured(result)),
             Ok(Err(CallError::Refused(message))) => Ok(failed(message)),
@@ -150,7 +163,7 @@ impl ServerHandler for CoinService {
         request: CallToolRequestParams,
         context: RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
-        let mut result = self.run(request).await?;
+        let mut result = self.run(request, &context).await?;
         result.meta = self.meta_for(&context);
         Ok(result.into())
     }
