@@ -89,11 +89,19 @@ impl Agent {
         Self { settings, objects, known: BTreeMap::new(), questions: 0, phase: Phase::Idle }
     }
 
-    /// Takes over what a person answered before the run; the thing is not asked about again. Call it before
-    /// `Started`. Unknown things and unresolved answers are passed over.
+    /// Takes over what a person answered before the run; a thing that is settled so is not asked about. Call it before
+    /// `Started`. Unknown things are passed over. An unresolved answer counts as a question that was asked.
     pub fn remember_answer(&mut self, object: &ObjectId, reading: Reading) {
         if let Some(state) = self.objects.get_mut(object) {
             state.apply_reading(reading);
+        }
+    }
+
+    /// Takes over that a person would not answer before the run; the thing is not asked about again. Call it before
+    /// `Started`. Unknown things are passed over.
+    pub fn remember_declined(&mut self, object: &ObjectId) {
+        if let Some(state) = self.objects.get_mut(object) {
+            state.close_to_questions();
         }
     }
 

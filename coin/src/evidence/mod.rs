@@ -6,9 +6,15 @@
 //! the owners (a Dirichlet–multinomial). Three terms of the prior look elsewhere: how many owners things have, what
 //! common sense expects of the class, and the answered owners of near things and look-alikes.
 
+mod context;
+mod newcomers;
+
 use libm::{lgamma, log};
 
 use coin_schemas::household::Score;
+
+pub use context::WeighedContext;
+pub use newcomers::judge;
 
 use crate::common_sense::Expectation;
 use crate::owners::{OwnerSet, OwnerSetDistribution, candidate_sets};
