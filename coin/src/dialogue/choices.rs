@@ -56,10 +56,13 @@ pub fn choices(roster: &Roster, likely: impl IntoIterator<Item = OwnerSet>) -> V
         .collect()
 }
 
-/// "Bob", "Bob and Mary", "Bob, Mary and Tom (all of us)".
+/// "Bob", "Bob and Mary", "all of us".
 fn words(roster: &Roster, owners: OwnerSet) -> String {
-    let names = list(roster, owners, Joined::And);
-    if owners == roster.everyone() && owners.len() > 2 { format!("{names} (all of us)") } else { names }
+    if owners == roster.everyone() && owners.len() > 2 {
+        "all of us".to_owned()
+    } else {
+        list(roster, owners, Joined::And)
+    }
 }
 
 #[cfg(test)]
@@ -89,7 +92,7 @@ mod tests {
                 "Bob and Mary",
                 "Bob and Tom",
                 "Mary and Tom",
-                "Bob, Mary and Tom (all of us)",
+                "all of us",
                 "nobody here owns it",
                 "I do not know",
             ]
@@ -109,7 +112,7 @@ mod tests {
                 "Uma",
                 "Vic",
                 "Mary and Uma",
-                "Bob, Mary, Tom, Uma and Vic (all of us)",
+                "all of us",
                 "nobody here owns it",
                 "other, as I write below",
                 "I do not know",
