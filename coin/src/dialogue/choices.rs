@@ -47,10 +47,7 @@ pub fn choices(roster: &Roster, likely: impl IntoIterator<Item = OwnerSet>) -> V
     };
     sets.into_iter()
         .map(of_set)
-        .chain([Choice {
-            words: "nobody here owns it".to_owned(),
-            meaning: Meaning::Says(outside),
-        }])
+        .chain([Choice { words: "nobody here owns it".to_owned(), meaning: Meaning::Says(outside) }])
         .chain(own_words)
         .chain([Choice { words: "I do not know".to_owned(), meaning: Meaning::Says(Reading::default()) }])
         .collect()

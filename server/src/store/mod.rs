@@ -8,14 +8,17 @@
 //! acknowledged survives the death of the process and a power cut. Several processes may use one file; a write
 //! waits up to [`BUSY_SECONDS`] seconds for another's.
 
+mod answers;
 mod beliefs;
 mod call;
 mod connections;
 mod error;
+mod forms;
 mod household;
 mod import;
 mod map;
 mod migrations;
+mod newcomers;
 mod open;
 #[cfg(test)]
 mod tests;
@@ -27,9 +30,11 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, TransactionBehavior};
 
-pub use beliefs::{Belief, Inference, RecordedAnswer, Retraction};
+pub use answers::{OpenQuestions, RecordedAnswer, Refusal, Retraction};
+pub use beliefs::{Belief, Inference};
 pub use call::{Call, Progress, Stage};
 pub use error::{BUSY_SECONDS, StoreError};
+pub use forms::{FORM_KEY_BYTES, FormSerial, SERIAL_BYTES, Spending};
 pub use household::{Household, UserKey};
 pub use import::ImportSummary;
 pub use map::{ObjectKey, StoredObject};

@@ -85,6 +85,7 @@ fn read_answer(
         at,
         status,
         retracted_at: None,
+        reopened_at: None,
     };
     Ok((answer, owners))
 }
