@@ -7,6 +7,7 @@
 pub mod cli;
 pub mod episode;
 mod near_miss;
+mod scene;
 pub mod service;
 pub mod store;
 #[cfg(test)]

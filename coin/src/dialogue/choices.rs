@@ -53,6 +53,12 @@ pub fn choices(roster: &Roster, likely: impl IntoIterator<Item = OwnerSet>) -> V
         .collect()
 }
 
+/// What a choice says, by its words; `None` where no form of this household offers such words.
+pub fn meaning_of(roster: &Roster, words: &str) -> Option<Meaning> {
+    let offered = choices(roster, candidate_sets(roster.len()));
+    offered.into_iter().find(|choice| choice.words == words).map(|choice| choice.meaning)
+}
+
 /// "Bob", "Bob and Mary", "all of us".
 fn words(roster: &Roster, owners: OwnerSet) -> String {
     if owners == roster.everyone() && owners.len() > 2 {

@@ -176,13 +176,18 @@ fn grounds(explained: &Explained<'_>, thing: &Thing) -> String {
         }
         users => {
             let named: Vec<String> =
-                users.iter().take(NAMED_USERS).map(|user| used(explained.roster, user)).collect();
+                users.iter().take(NAMED_USERS).map(|user| in_sessions(explained.roster, user)).collect();
+            let named = join(&named, Joined::And);
+            let first =
+                users.first().map(|user| explained.roster.name(user.user).as_str()).unwrap_or_default();
+            let named =
+                format!("{first} used {}{}", thing.object, named.strip_prefix(first).unwrap_or(&named));
             let rest = match users.len().saturating_sub(NAMED_USERS) {
                 0 => String::new(),
                 1 => ", and one other person did too".to_owned(),
                 more => format!(", and {more} others did too"),
             };
-            format!("{} used {}{rest}", join(&named, Joined::And), thing.object)
+            format!("{named}{rest}")
         }
     };
     let beside = relative.as_ref().map_or(String::new(), |relative| {
@@ -198,7 +203,7 @@ fn grounds(explained: &Explained<'_>, thing: &Thing) -> String {
 }
 
 /// "Bob in 3 sessions (last 0.8 days ago)".
-fn used(roster: &Roster, user: &UserGrounds) -> String {
+fn in_sessions(roster: &Roster, user: &UserGrounds) -> String {
     let UserGrounds { user, sessions, days_ago } = *user;
     let sessions = if sessions == 1 { "1 session".to_owned() } else { format!("{sessions} sessions") };
     format!("{} in {sessions} (last {days_ago:.1} days ago)", roster.name(user))

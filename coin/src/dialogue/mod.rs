@@ -9,7 +9,7 @@ mod thing;
 mod wording;
 
 pub use answer::{Reading, read_answer};
-pub use choices::{Choice, Meaning, choices};
+pub use choices::{Choice, Meaning, choices, meaning_of};
 pub use explanation::{
     Conclusion, Explained, Grounds, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };

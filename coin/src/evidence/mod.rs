@@ -117,7 +117,7 @@ pub fn likeness_counts(class: &str, other_class: &str) -> bool {
 
 impl EvidenceParameters {
     /// The probability that the thing has the relative's owners *because* of the relation.
-    fn coupling(&self, relation: Relation) -> f64 {
+    pub fn coupling(&self, relation: Relation) -> f64 {
         match relation {
             Relation::Near { weight } => self.place * weight,
             Relation::LooksAlike { similarity } => self.looks * similarity.max(0.0),

@@ -130,7 +130,7 @@ pub struct NextQuestionResult {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ObjectRef")]
     pub object: Option<ObjectRef>,
-    /// The plausible owners.
+    /// The plausible owners; everybody where nobody is plausible enough.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Owners")]
     pub candidates: Option<Owners>,

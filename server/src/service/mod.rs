@@ -1,18 +1,19 @@
 //! The MCP service: what a client sees of the tools.
 
+mod calls;
+mod forms;
 mod work;
 
 use std::sync::Arc;
 
 use rmcp::model::{
-    CacheScope, CallToolRequestParams, CallToolResponse, CallToolResult, ContentBlock, CustomRequest,
-    CustomResult, ErrorCode, Implementation, JsonObject, ListToolsResult, MetaObject, PaginatedRequestParams,
-    ProtocolVersion, ServerCapabilities, ServerConfig, Tool,
+    CacheScope, CallToolRequestParams, CallToolResponse, CustomRequest, CustomResult, ErrorCode,
+    Implementation, ListToolsResult, MetaObject, PaginatedRequestParams, ServerCapabilities, ServerConfig,
+    Tool,
 };
 use rmcp::service::RequestContext;
 use rmcp::{ErrorData, RoleServer, ServerHandler};
 
-use serde_json::Value;
 use thiserror::Error;
 
 use crate::store::Store;
@@ -76,53 +77,10 @@ impl CoinService {
         self.tools.definitions()
     }
 
-    /// Calls a tool on this thread, which may wait for the disk, without the protocol around it.
-    ///
-    /// # Errors
-    /// If there is no such tool, or if it refuses the call; the text says why.
-    pub fn call(&self, tool: &str, arguments: JsonObject) -> Result<Value, CallError> {
-        self.call_in(&self.store, tool, arguments)
-    }
-
-    fn call_in(&self, store: &Store, tool: &str, arguments: JsonObject) -> Result<Value, CallError> {
-        let tool = self.tools.get(tool).ok_or_else(|| CallError::Unknown(self.tools.unknown(tool)))?;
-        tool.call(store, arguments).map_err(|error| CallError::Refused(error.to_string()))
-    }
-
-    /// Runs a tool. One that panics is answered like one that failed.
-    async fn run(
-        &self,
-        request: CallToolRequestParams,
-        context: &RequestContext<RoleServer>,
-    ) -> Result<CallToolResult, ErrorData> {
-        let service = self.clone();
-        let arguments = request.arguments.unwrap_or_default();
-        let outcome = work::run(context, move |call| {
-            service.call_in(&service.store.during(call), &request.name, arguments)
-        })
-        .await;
-        match outcome {
-            Ok(Ok(result)) => Ok(CallToolResult::structured(result)),
-            Ok(Err(CallError::Refused(message))) => Ok(failed(message)),
-            Ok(Err(CallError::Unknown(source))) => Err(ErrorData::invalid_params(source.to_string(), None)),
-            Err(_) => Ok(failed(
-                "the tool stopped because of a fault in the server, and nothing was changed; the server's log \
-                 (stderr) says more"
-                    .to_owned(),
-            )),
-        }
-    }
-
     /// What results carry beside their content, for clients that know it.
     fn meta_for(&self, context: &RequestContext<RoleServer>) -> Option<MetaObject> {
-        let modern =
-            context.protocol_version().is_some_and(|version| version >= ProtocolVersion::V_2026_07_28);
-        modern.then(|| (*self.meta).clone())
+        calls::is_modern(context).then(|| (*self.meta).clone())
     }
-}
-
-fn failed(message: String) -> CallToolResult {
-    CallToolResult::error(vec![ContentBlock::text(message)])
 }
 
 fn implementation() -> Implementation {
@@ -163,9 +121,13 @@ impl ServerHandler for CoinService {
         request: CallToolRequestParams,
         context: RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
-        let mut result = self.run(request, &context).await?;
-        result.meta = self.meta_for(&context);
-        Ok(result.into())
+        let mut response = self.answer(request, &context).await?;
+        match &mut response {
+            CallToolResponse::Complete(result) => result.meta = self.meta_for(&context),
+            CallToolResponse::InputRequired(result) => result.meta = self.meta_for(&context),
+            _ => {}
+        }
+        Ok(response)
     }
 
     /// A request whose parameters do not fit its method arrives here too.

@@ -146,7 +146,7 @@ impl StoreError {
     }
 
     /// What stands in the file is nothing that this program writes.
-    pub(super) fn damaged(detail: impl Into<String>) -> Self {
+    pub(crate) fn damaged(detail: impl Into<String>) -> Self {
         Self::Damaged { detail: detail.into() }
     }
 }

@@ -38,11 +38,11 @@ fn explained(class: &str, conclusion: Conclusion<'_>, grounds: Grounds) -> Strin
 #[rstest]
 #[case::settled(
     "marker", inferred(&[0], 0.9712, Standing::Settled, &[]), used(&[3, 1, 0]),
-    "The marker in the office very probably belongs to Bob (97 %). Bob in 3 sessions (last 0.8 days ago) and Mary in 1 session (last 0.8 days ago) used it."
+    "The marker in the office very probably belongs to Bob (97 %). Bob used it in 3 sessions (last 0.8 days ago) and Mary in 1 session (last 0.8 days ago)."
 )]
 #[case::open(
     "scissors", inferred(&[0], 0.541, Standing::Open, &[1, 2]), used(&[1, 0, 0]),
-    "The scissors in the office most probably belong to Bob (54 %), but Mary or Tom may own them too. Bob in 1 session (last 0.8 days ago) used them."
+    "The scissors in the office most probably belong to Bob (54 %), but Mary or Tom may own them too. Bob used them in 1 session (last 0.8 days ago)."
 )]
 #[case::open_without_rivals(
     "sofa", inferred(&[0, 1, 2], 0.8, Standing::Open, &[]), used(&[0, 0, 0]),
@@ -50,7 +50,7 @@ fn explained(class: &str, conclusion: Conclusion<'_>, grounds: Grounds) -> Strin
 )]
 #[case::pair(
     "marker", inferred(&[0, 2], 0.9999, Standing::Settled, &[]), used(&[9, 0, 9]),
-    "The marker in the office very probably is shared by Bob and Tom (over 99 %). Bob in 9 sessions (last 0.8 days ago) and Tom in 9 sessions (last 0.8 days ago) used it."
+    "The marker in the office very probably is shared by Bob and Tom (over 99 %). Bob used it in 9 sessions (last 0.8 days ago) and Tom in 9 sessions (last 0.8 days ago)."
 )]
 fn an_inference_is_told_with_its_doubt_and_its_grounds(
     #[case] class: &str,
