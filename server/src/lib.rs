@@ -5,6 +5,7 @@
 
 #[doc(hidden)]
 pub mod cli;
+mod cursor;
 pub mod episode;
 mod near_miss;
 mod scene;

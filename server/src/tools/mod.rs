@@ -7,6 +7,7 @@ mod add_user;
 mod arguments;
 mod ask_owner;
 mod conversation;
+pub(crate) mod document;
 mod error;
 mod fields;
 mod get_usage_summary;

@@ -1,5 +1,7 @@
 //! The service as a client meets it: lines of JSON over a pipe.
 
+mod asking;
+mod documents;
 mod tools;
 mod work;
 
@@ -74,11 +76,16 @@ struct Client {
 }
 
 impl Client {
-    /// Starts a service on one end of a pipe and holds the other.
+    /// Starts a service of the test home on one end of a pipe and holds the other.
     fn start() -> Self {
+        Self::start_on(test_home::store())
+    }
+
+    /// The same for another home.
+    fn start_on(store: Store) -> Self {
         let tools =
             Registry::new(&ToolSelection::all(), Access::ReadWrite).with::<Panics>().with::<Endless>();
-        let service = CoinService::new(Arc::new(test_home::store()), tools);
+        let service = CoinService::new(Arc::new(store), tools);
         let (ours, theirs) = tokio::io::duplex(1 << 20);
         tokio::spawn(
             async move { service.serve(theirs).await?.waiting().await.map_err(anyhow::Error::from) },
@@ -96,16 +103,25 @@ impl Client {
 
     /// Starts a service and shakes hands with it as clients up to 2025 do.
     async fn initialized() -> Self {
+        Self::with_capabilities(json!({})).await
+    }
+
+    /// The same with a client that can do this.
+    async fn with_capabilities(capabilities: Value) -> Self {
         let mut client = Self::start();
-        let answer = client
-            .request(
-                "initialize",
-                json!({"protocolVersion": "2025-11-25", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}}),
-            )
-            .await;
-        assert_eq!(answer["result"]["protocolVersion"], "2025-11-25");
-        client.send(json!({"jsonrpc": "2.0", "method": "notifications/initialized"})).await;
+        client.initialize(capabilities).await;
         client
+    }
+
+    async fn initialize(&mut self, capabilities: Value) {
+        let params = json!({
+            "protocolVersion": "2025-11-25",
+            "capabilities": capabilities,
+            "clientInfo": {"name": "test", "version": "0"},
+        });
+        let answer = self.request("initialize", params).await;
+        assert_eq!(answer["result"]["protocolVersion"], "2025-11-25");
+        self.send(json!({"jsonrpc": "2.0", "method": "notifications/initialized"})).await;
     }
 
     async fn send(&mut self, message: Value) {
