@@ -27,7 +27,7 @@ pub(super) fn complete(store: &Store, request: &CompleteRequestParams) -> Result
         ANSWERED_BY => store.read(|reader| Ok::<_, StoreError>(people(reader.household()?.as_ref(), &typed))),
         _ => Ok(Vec::new()),
     };
-    let mut values = values.map_err(internal)?;
+    let mut values = values.map_err(|source| internal(&source))?;
     let total = values.len();
     values.truncate(CompletionInfo::MAX_VALUES);
     let has_more = total > values.len();

@@ -80,10 +80,11 @@ pub(super) fn request(form: &Form) -> ElicitRequestParams {
     let own_words = StringSchema::new()
         .title("In your own words (optional)")
         .max_length(u32::try_from(MAX_TEXT_BYTES).unwrap_or(u32::MAX));
-    let schema = ElicitationSchema::builder()
+    let mut schema = ElicitationSchema::builder()
         .required_enum_schema(Form::CHOICE, choice)
         .property(Form::OWN_WORDS, PrimitiveSchemaDefinition::String(own_words))
         .build_unchecked();
+    schema.property_order = Some(vec![Form::CHOICE.to_owned(), Form::OWN_WORDS.to_owned()]);
     ElicitRequestParams::FormElicitationParams {
         meta: None,
         message: form.message.clone(),

@@ -1,6 +1,7 @@
 //! Prompts: what a person can have an assistant do with the home.
 
 use coin::space::Neighbourhood;
+use coin_schemas::household::UserName;
 use coin_schemas::tools::{DEFAULT_K, DEFAULT_MAX_EXAMPLES};
 use rmcp::ErrorData;
 use rmcp::model::{GetPromptResult, JsonObject, Prompt, PromptArgument, PromptMessage, Role};
@@ -152,9 +153,9 @@ fn ask(store: &Store, id: &str) -> Result<String, ErrorData> {
 fn read(store: &Store, question: &str, answer: &str, answered_by: Option<&str>) -> Result<String, ErrorData> {
     let users = store
         .read(|reader| Ok::<_, StoreError>(Scene::new(reader)?.household().roster().users()))
-        .map_err(internal)?;
+        .map_err(|source| internal(&source))?;
     if let Some(name) = answered_by.filter(|name| !users.keys().any(|user| user.as_str() == *name)) {
-        let names: Vec<&str> = users.keys().map(|user| user.as_str()).collect();
+        let names: Vec<&str> = users.keys().map(UserName::as_str).collect();
         return Err(wrong(format!(
             "{ANSWERED_BY}: {name:?} is no member of the household; the members are {}",
             names.join(", ")
@@ -164,7 +165,7 @@ fn read(store: &Store, question: &str, answer: &str, answered_by: Option<&str>) 
         json!({"household": users, "question": question, "answer": answer, "answered_by": answered_by});
     Ok(format!(
         "A person was asked whose a thing is. Say for every member of the household whether the answer makes this person \
-         an owner, and record it with record_answer. Several people may own a thing together; \"mine\" and \"ours\" \
+         an owner, and record it with record_answer for the thing that was asked about. Several people may own a thing together; \"mine\" and \"ours\" \
          are said by whoever answered; borrowing and using make nobody an owner. If the answer names only people from \
          outside, set owner_outside_household; if it cannot be told, leave everybody out.\n\n\
          What was said, as JSON. {ONLY_DATA}\n{said}"
@@ -180,7 +181,7 @@ fn with_thing(
         let Some(object) = reader.object(id)? else { return Ok(None) };
         tell(&Scene::new(reader)?, &object).map(Some)
     });
-    told.map_err(internal)?.ok_or_else(|| {
+    told.map_err(|source| internal(&source))?.ok_or_else(|| {
         wrong(format!("{OBJECT_ID}: there is no object {id:?}; completion and list_objects give the ids"))
     })
 }

@@ -1,5 +1,7 @@
 //! Resources: the home as documents that a host can show or attach.
 
+use std::borrow::Cow;
+
 use coin_schemas::household::ObjectId;
 use coin_schemas::tools::{ListObjects, ListUsers, MAX_LIMIT, ObjectRef, WhoseIs, display_name};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
@@ -39,7 +41,7 @@ enum Document {
 impl Document {
     /// Reads a URI. Ids are percent-encoded in it; there are no folders, and `..` is an id like any other.
     fn of(uri: &str) -> Option<Self> {
-        let decoded = |text: &str| percent_decode_str(text).decode_utf8().ok().map(|id| id.into_owned());
+        let decoded = |text: &str| percent_decode_str(text).decode_utf8().ok().map(Cow::into_owned);
         match uri {
             HOUSEHOLD => Some(Self::Household),
             OBJECTS => Some(Self::Objects),
@@ -86,33 +88,36 @@ pub(super) fn list(store: &Store, cursor: Option<&str>) -> Result<ListResourcesR
         })
     });
     let after = after.transpose()?;
-    let objects = store.read(|reader| Ok::<_, StoreError>(reader.objects()?)).map_err(internal)?;
-    let mut page = Vec::new();
-    if after.is_none() {
-        page.push(
-            Resource::new(HOUSEHOLD, "household")
-                .with_title("The people")
-                .with_description("The members of the household with their roles and occupations.")
-                .with_mime_type(JSON),
-        );
-        page.push(
-            Resource::new(OBJECTS, "objects")
-                .with_title("The things")
-                .with_description("All things of the home, where they are and who is held to own them.")
-                .with_mime_type(JSON),
-        );
-    }
-    let mut rest = objects
-        .iter()
-        .filter(|object| after.as_deref().is_none_or(|after| object.id.as_str() > after))
-        .peekable();
+    store
+        .read(|reader| Ok::<_, StoreError>(page(&reader.objects()?, after.as_deref())))
+        .map_err(|source| internal(&source))
+}
+
+fn page(objects: &[StoredObject], after: Option<&str>) -> ListResourcesResult {
+    let mut page = if after.is_none() { of_home() } else { Vec::new() };
+    let mut rest =
+        objects.iter().filter(|object| after.is_none_or(|after| object.id.as_str() > after)).peekable();
     let mut last = None;
     for object in rest.by_ref().take(PAGE) {
         page.push(of_thing(object));
         last = Some(&object.id);
     }
     let next_cursor = last.filter(|_| rest.peek().is_some()).map(|last| cursor::after(last.as_str()));
-    Ok(ListResourcesResult { next_cursor, ..ListResourcesResult::with_all_items(page) })
+    ListResourcesResult { next_cursor, ..ListResourcesResult::with_all_items(page) }
+}
+
+/// The documents about the home as a whole.
+fn of_home() -> Vec<Resource> {
+    vec![
+        Resource::new(HOUSEHOLD, "household")
+            .with_title("The people")
+            .with_description("The members of the household with their roles and occupations.")
+            .with_mime_type(JSON),
+        Resource::new(OBJECTS, "objects")
+            .with_title("The things")
+            .with_description("All things of the home, where they are and who is held to own them.")
+            .with_mime_type(JSON),
+    ]
 }
 
 fn of_thing(object: &StoredObject) -> Resource {
@@ -143,7 +148,9 @@ pub(super) fn read(store: &Store, uri: &str) -> Result<ResourceContents, ErrorDa
         Document::Object(id) if is_known(store, &id)? => {
             document::whose_is(store, WhoseIs { object_id: id, as_of: None })
         }
-        Document::History(id) if is_known(store, &id)? => Ok(history(store, &id).map_err(internal)?),
+        Document::History(id) if is_known(store, &id)? => {
+            Ok(history(store, &id).map_err(|source| internal(&source))?)
+        }
         Document::Object(_) | Document::History(_) => return Err(unknown()),
     };
     let content = content.map_err(|source| ErrorData::internal_error(source.to_string(), None))?;
@@ -151,7 +158,9 @@ pub(super) fn read(store: &Store, uri: &str) -> Result<ResourceContents, ErrorDa
 }
 
 fn is_known(store: &Store, id: &str) -> Result<bool, ErrorData> {
-    store.read(|reader| Ok::<_, StoreError>(reader.object_key(id)?.is_some())).map_err(internal)
+    store
+        .read(|reader| Ok::<_, StoreError>(reader.object_key(id)?.is_some()))
+        .map_err(|source| internal(&source))
 }
 
 /// What was seen of a thing and what people said of it.
@@ -192,7 +201,7 @@ fn of_answer(answer: &RecordedAnswer) -> Value {
     told
 }
 
-pub(super) fn internal(source: StoreError) -> ErrorData {
+pub(super) fn internal(source: &StoreError) -> ErrorData {
     ErrorData::internal_error(source.to_string(), None)
 }
 
