@@ -32,7 +32,7 @@ pub(super) struct Serve {
     #[arg(long, value_name = "all|core|NAME,…", default_value = "all")]
     tools: ToolSelection,
     /// Serve many clients over HTTP at /mcp, such as 127.0.0.1:8750; port 0 takes a free one, and stderr names it
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "ADDRESS:PORT", value_parser = address)]
     http: Option<SocketAddr>,
     #[command(flatten)]
     network: Network,
@@ -51,6 +51,13 @@ struct Network {
     /// How many requests one address may send in a second
     #[arg(long, value_name = "N", requires = "http", default_value_t = Limits::default().requests_per_second)]
     requests_per_second: NonZeroU32,
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_| {
+        "an address is such as 127.0.0.1:8750 (for this computer alone) or 0.0.0.0:8750 (for others too, with a token)"
+            .to_owned()
+    })
 }
 
 pub(super) fn run(serve: &Serve) -> Result<(), Failure> {

@@ -89,3 +89,70 @@ pub(super) async fn refuse_strangers(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use axum::http::HeaderValue;
+    use rstest::rstest;
+
+    use super::*;
+
+    fn check(headers: &[(HeaderName, &str)]) -> Result<(), &'static str> {
+        let headers = headers
+            .iter()
+            .map(|(name, value)| (name.clone(), HeaderValue::from_bytes(value.as_bytes()).unwrap()));
+        let mut map = HeaderMap::new();
+        for (name, value) in headers {
+            map.append(name, value);
+        }
+        Callers::new(&["Home.lan".to_owned()]).check(&map, "192.168.1.5".parse().unwrap())
+    }
+
+    #[rstest]
+    #[case::name("localhost")]
+    #[case::name_with_port("localhost:8750")]
+    #[case::case("LocalHost")]
+    #[case::version_4("127.0.0.1:8750")]
+    #[case::whole_loopback_network("127.1.2.3")]
+    #[case::version_6("[::1]:8750")]
+    #[case::where_the_client_connected("192.168.1.5:8750")]
+    #[case::allowed("home.LAN:8750")]
+    fn hosts_of_this_server_pass(#[case] host: &str) {
+        assert_eq!(check(&[(header::HOST, host)]), Ok(()));
+        let origin = format!("http://{host}");
+        assert_eq!(check(&[(header::HOST, host), (header::ORIGIN, &origin)]), Ok(()));
+    }
+
+    #[rstest]
+    #[case::rebound("evil.example")]
+    #[case::looks_like_ours("localhost.evil.example")]
+    #[case::ends_like_ours("evil.home.lan")]
+    #[case::a_number("127.0.0.1.evil.example:8750")]
+    #[case::another_computer("192.168.1.6")]
+    #[case::anywhere("0.0.0.0")]
+    #[case::empty("")]
+    #[case::no_name("a b")]
+    #[case::not_ascii("löcalhost")]
+    fn other_hosts_are_refused(#[case] host: &str) {
+        assert!(check(&[(header::HOST, host)]).is_err());
+        let origin = format!("https://{host}");
+        assert!(check(&[(header::HOST, "localhost"), (header::ORIGIN, &origin)]).is_err());
+    }
+
+    #[rstest]
+    #[case::sandboxed_page("null")]
+    #[case::user_that_looks_like_a_host("http://localhost@evil.example")]
+    #[case::nothing("")]
+    #[case::file("file://")]
+    fn other_origins_are_refused(#[case] origin: &str) {
+        assert!(check(&[(header::HOST, "localhost"), (header::ORIGIN, origin)]).is_err());
+    }
+
+    #[test]
+    fn what_stands_there_twice_or_not_at_all_is_refused() {
+        assert!(check(&[]).is_err());
+        assert!(check(&[(header::HOST, "localhost"), (header::HOST, "localhost")]).is_err());
+        let origin = (header::ORIGIN, "http://localhost");
+        assert!(check(&[(header::HOST, "localhost"), origin.clone(), origin]).is_err());
+    }
+}

@@ -141,6 +141,3 @@ fn refused(status: StatusCode, reason: &str) -> Response {
 fn refused_for_now(status: StatusCode, reason: &str) -> Response {
     (status, [(RETRY_AFTER, "1")], format!("{reason}\n")).into_response()
 }
-
-#[cfg(test)]
-mod tests;

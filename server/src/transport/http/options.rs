@@ -37,6 +37,8 @@ pub struct Limits {
     pub body: Duration,
     /// The size of a body.
     pub body_bytes: usize,
+    /// The size of all bodies that are being read or worked on.
+    pub bodies_bytes: usize,
     /// How long a client may read nothing while an answer waits for it.
     pub write: Duration,
     /// Requests from one address in a second.
@@ -62,6 +64,7 @@ impl Default for Limits {
             head: Duration::from_secs(30),
             body: Duration::from_secs(30),
             body_bytes: 4 << 20,
+            bodies_bytes: 64 << 20,
             write: Duration::from_secs(30),
             requests_per_second: REQUESTS_PER_SECOND,
             requests_at_once: 32,

@@ -108,3 +108,52 @@ pub(super) async fn require(State(token): State<Option<Token>>, request: Request
     let reason = "This server wants its token: Authorization: Bearer TOKEN.\n";
     (StatusCode::UNAUTHORIZED, [(WWW_AUTHENTICATE, "Bearer")], reason).into_response()
 }
+
+#[cfg(test)]
+mod tests {
+    use axum::http::HeaderValue;
+    use rstest::rstest;
+
+    use super::*;
+
+    #[rstest]
+    #[case::right("Bearer s3cret", true)]
+    #[case::case_of_the_scheme("bEARER s3cret", true)]
+    #[case::more_space("Bearer  s3cret", true)]
+    #[case::wrong("Bearer s3cres", false)]
+    #[case::beginning("Bearer s3cre", false)]
+    #[case::longer("Bearer s3crets", false)]
+    #[case::case_of_the_token("Bearer S3cret", false)]
+    #[case::nothing("Bearer ", false)]
+    #[case::no_scheme("s3cret", false)]
+    #[case::other_scheme("Basic s3cret", false)]
+    fn only_the_token_itself_opens(#[case] shown: &'static str, #[case] opens: bool) {
+        let token = Token::new("s3cret").unwrap();
+        let headers = HeaderMap::from_iter([(AUTHORIZATION, HeaderValue::from_static(shown))]);
+        assert_eq!(token.is_shown_by(&headers), opens);
+        assert!(!token.is_shown_by(&HeaderMap::new()));
+    }
+
+    #[test]
+    fn the_first_line_of_a_file_is_the_token() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("token");
+        fs::write(&path, " s3cret \r\nwhat it is for\n").unwrap();
+        let token = Token::from_file(&path).unwrap();
+        assert_eq!(&*token.0, "s3cret");
+        assert_eq!(format!("{token:?}"), "Token(…)");
+    }
+
+    #[test]
+    fn what_no_client_could_send_is_no_token() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("token");
+        for text in ["", "\n", "\ns3cret", "two words", "schlüssel", "a\u{7}b"] {
+            fs::write(&path, text).unwrap();
+            let error = Token::from_file(&path).unwrap_err().to_string();
+            assert!(error.contains("token: it must be one word of visible ASCII"), "{error}");
+        }
+        let missing = Token::from_file(&folder.path().join("nowhere")).unwrap_err().to_string();
+        assert!(missing.contains("nowhere: No such file"), "{missing}");
+    }
+}
