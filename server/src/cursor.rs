@@ -20,7 +20,9 @@ pub(crate) fn after(last: &str) -> String {
 
 /// The last item of the page before; `None` where this is no cursor.
 pub(crate) fn read(cursor: &str) -> Option<String> {
-    let digits = cursor.strip_prefix(MARK).filter(|digits| digits.is_ascii() && digits.len() % 2 == 0)?;
+    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    let digits =
+        cursor.strip_prefix(MARK).filter(|digits| digits.bytes().all(is_digit) && digits.len() % 2 == 0)?;
     let bytes: Option<Vec<u8>> = digits
         .as_bytes()
         .chunks(2)

@@ -16,11 +16,13 @@ Examples:
   coin-server import --episode fixtures/episodes/small-house --db home.db
   coin-server --db home.db                       # serve an MCP client on stdin and stdout
   coin-server --db home.db --read-only --tools get_usage_summary,list_objects
+  coin-server --db home.db --http 127.0.0.1:8750 # serve many clients on this computer
+  coin-server --db home.db --http 0.0.0.0:8750 --token-file token.txt    # and for other computers
 
-Exit status: 0 done; 1 failed; 2 wrong use, a refused episode, or a database that cannot be opened.
+Exit status: 0 done; 1 failed; 2 wrong use, a refused episode, or a database or address that cannot be opened.
 Log messages go to stderr; RUST_LOG=debug shows more of them.";
 
-/// Serve what a home knows about its things to an MCP client, over standard input and output.
+/// Serve what a home knows about its things to an MCP client, over standard input and output or HTTP.
 #[derive(Debug, Parser)]
 #[command(name = "coin-server", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 struct Arguments {

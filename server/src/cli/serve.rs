@@ -1,15 +1,24 @@
 //! `coin-server` without a command: serving a home.
 
+use std::env;
+use std::net::SocketAddr;
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
+use tokio::runtime;
+use tokio_util::sync::CancellationToken;
 
-use super::{Failure, failed, open};
-use crate::service::{ServiceOptions, service};
+use super::{Failure, failed, open, refused, say};
+use crate::service::{CoinService, ServiceOptions, service};
 use crate::store::Access;
 use crate::tools::ToolSelection;
-use crate::transport::stdio;
+use crate::transport::http::{self, HttpOptions, Limits, Token};
+use crate::transport::{stdio, until_told_to_end};
+
+/// Holds the token where no file does.
+const TOKEN_VARIABLE: &str = "COIN_TOKEN";
 
 #[derive(Debug, Args)]
 pub(super) struct Serve {
@@ -22,6 +31,33 @@ pub(super) struct Serve {
     /// The tools to offer: all, core (those that a program with an ownership loop of its own needs), or names
     #[arg(long, value_name = "all|core|NAME,…", default_value = "all")]
     tools: ToolSelection,
+    /// Serve many clients over HTTP at /mcp, such as 127.0.0.1:8750; port 0 takes a free one, and stderr names it
+    #[arg(long, value_name = "ADDRESS:PORT", value_parser = address)]
+    http: Option<SocketAddr>,
+    #[command(flatten)]
+    network: Network,
+}
+
+/// What only matters with `--http`.
+#[derive(Debug, Args)]
+struct Network {
+    /// A file whose first line is the token that clients must show; without it, COIN_TOKEN holds the token. Where
+    /// other computers can connect, there must be one
+    #[arg(long, value_name = "FILE", requires = "http")]
+    token_file: Option<PathBuf>,
+    /// A further name by which clients call this server, such as the computer's name; may be repeated
+    #[arg(long, value_name = "NAME", requires = "http")]
+    allow_host: Vec<String>,
+    /// How many requests one address may send in a second
+    #[arg(long, value_name = "N", requires = "http", default_value_t = Limits::default().requests_per_second)]
+    requests_per_second: NonZeroU32,
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_| {
+        "an address is such as 127.0.0.1:8750 (for this computer alone) or 0.0.0.0:8750 (for others too, with a token)"
+            .to_owned()
+    })
 }
 
 pub(super) fn run(serve: &Serve) -> Result<(), Failure> {
@@ -29,6 +65,39 @@ pub(super) fn run(serve: &Serve) -> Result<(), Failure> {
     let store = open(serve.db.as_deref(), access)?;
     let options = ServiceOptions { tools: serve.tools.clone() };
     let service = service(Arc::new(store), options);
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(failed)?;
-    runtime.block_on(stdio::serve(service)).map_err(failed)
+    let runtime = runtime::Builder::new_multi_thread().enable_all().build().map_err(failed)?;
+    runtime.block_on(async {
+        match serve.http {
+            Some(address) => serve_http(service, address, &serve.network).await,
+            None => stdio::serve(service).await.map_err(failed),
+        }
+    })
+}
+
+async fn serve_http(service: CoinService, address: SocketAddr, network: &Network) -> Result<(), Failure> {
+    let mut options = HttpOptions::new(address);
+    options.token = token(network)?;
+    options.allowed_hosts.clone_from(&network.allow_host);
+    options.limits.requests_per_second = network.requests_per_second;
+    let server = http::bind(options).await.map_err(refused)?;
+    let shutdown = CancellationToken::new();
+    let told_to_end = until_told_to_end().map_err(failed)?;
+    say(&format!("coin-server: serving MCP at {}", server.url()));
+    let when_told = shutdown.clone();
+    tokio::spawn(async move {
+        told_to_end.await;
+        when_told.cancel();
+    });
+    server.serve(service, shutdown).await;
+    Ok(())
+}
+
+/// The token that clients must show, if there is to be one. It is never an argument: others can read those.
+fn token(network: &Network) -> Result<Option<Token>, Failure> {
+    if let Some(file) = &network.token_file {
+        return Token::from_file(file).map(Some).map_err(refused);
+    }
+    let Some(value) = env::var_os(TOKEN_VARIABLE) else { return Ok(None) };
+    let token = Token::new(&value.to_string_lossy());
+    token.map(Some).map_err(|source| refused(format!("{TOKEN_VARIABLE}: {source}")))
 }
