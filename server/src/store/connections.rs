@@ -1,15 +1,16 @@
 //! The connections to one database: one that writes, and some that read beside it.
 
-use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use rusqlite::Connection;
 
 use super::{Access, StoreError, open};
 
-/// How many connections read at once. A read takes well under a millisecond, so more would only cost memory.
-const MOST_READERS: usize = 16;
+/// How many connections read at once. A read takes well under a millisecond of computing, so that more than there are
+/// processors would only wait for one another. They are opened together with the one that writes: a file that takes the
+/// place of another one later must not be read in its stead.
+const READERS: usize = 4;
 
 /// The connections to one database.
 ///
@@ -28,41 +29,28 @@ pub(super) enum Connections {
     },
 }
 
-/// Connections that read, opened when they are first needed.
+/// Connections that read.
 #[derive(Debug)]
 pub(super) struct Pool {
-    path: PathBuf,
-    access: Access,
-    state: Mutex<PoolState>,
+    idle: Mutex<Vec<Connection>>,
     returned: Condvar,
-}
-
-#[derive(Default)]
-struct PoolState {
-    idle: Vec<Connection>,
-    open: usize,
-}
-
-impl fmt::Debug for PoolState {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} of {} idle", self.idle.len(), self.open)
-    }
 }
 
 impl Connections {
     pub(super) fn to_file(path: &Path, access: Access) -> Result<Self, StoreError> {
         let first = open::file(path, access)?;
-        let mut readers = PoolState::default();
+        let mut idle = Vec::with_capacity(READERS);
         let writer = match access {
             Access::ReadWrite => Some(Mutex::new(first)),
             Access::ReadOnly => {
-                readers = PoolState { idle: vec![first], open: 1 };
+                idle.push(first);
                 None
             }
         };
-        let readers =
-            Pool { path: path.to_owned(), access, state: Mutex::new(readers), returned: Condvar::new() };
-        Ok(Self::Several { writer, readers })
+        while idle.len() < READERS {
+            idle.push(open::another(path, access)?);
+        }
+        Ok(Self::Several { writer, readers: Pool { idle: Mutex::new(idle), returned: Condvar::new() } })
     }
 
     pub(super) fn to_memory() -> Result<Self, StoreError> {
@@ -70,9 +58,9 @@ impl Connections {
     }
 
     /// A connection for reading, as soon as there is one.
-    pub(super) fn reader(&self) -> Result<Lent<'_>, StoreError> {
+    pub(super) fn reader(&self) -> Lent<'_> {
         match self {
-            Self::One(connection) => Ok(Lent::Only(locked(connection))),
+            Self::One(connection) => Lent::Only(locked(connection)),
             Self::Several { readers, .. } => readers.lend(),
         }
     }
@@ -87,31 +75,18 @@ impl Connections {
 }
 
 impl Pool {
-    fn lend(&self) -> Result<Lent<'_>, StoreError> {
-        let mut state = locked(&self.state);
+    fn lend(&self) -> Lent<'_> {
+        let mut idle = locked(&self.idle);
         loop {
-            if let Some(connection) = state.idle.pop() {
-                return Ok(Lent::Pooled { pool: self, connection: Some(connection) });
-            }
-            if state.open < MOST_READERS {
-                break;
-            }
-            state = self.returned.wait(state).unwrap_or_else(PoisonError::into_inner);
-        }
-        state.open += 1;
-        drop(state);
-        match open::another(&self.path, self.access) {
-            Ok(connection) => Ok(Lent::Pooled { pool: self, connection: Some(connection) }),
-            Err(source) => {
-                locked(&self.state).open -= 1;
-                self.returned.notify_one();
-                Err(source)
+            match idle.pop() {
+                Some(connection) => return Lent::Pooled { pool: self, connection: Some(connection) },
+                None => idle = self.returned.wait(idle).unwrap_or_else(PoisonError::into_inner),
             }
         }
     }
 
     fn take_back(&self, connection: Connection) {
-        locked(&self.state).idle.push(connection);
+        locked(&self.idle).push(connection);
         self.returned.notify_one();
     }
 }

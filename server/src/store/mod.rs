@@ -105,7 +105,7 @@ impl Store {
         &self,
         work: impl FnOnce(&Reader<'_>) -> Result<T, E>,
     ) -> Result<T, E> {
-        let mut lent = self.connections.reader()?;
+        let mut lent = self.connections.reader();
         let connection = lent.connection().ok_or(StoreError::Interrupted)?;
         let _visit = self.call.enter(connection)?;
         let transaction =
