@@ -89,6 +89,11 @@ impl ServerProcess {
         Self { child, stdin, lines, stderr, era, last_id: 0, early: BTreeMap::new(), tools: OnceCell::new() }
     }
 
+    /// The server's process.
+    pub fn process(&self) -> u32 {
+        self.child.id()
+    }
+
     /// What the server wrote to standard error so far.
     pub fn stderr(&self) -> String {
         self.stderr.text()
@@ -117,16 +122,26 @@ impl ServerProcess {
     /// Sends a line as it is.
     #[track_caller]
     pub fn send_line(&mut self, line: &str) {
-        self.try_send_line(line).unwrap_or_else(|error| {
-            panic!("the server does not listen ({error}); standard error: {}", self.stderr())
-        });
+        self.send_bytes(format!("{line}\n").as_bytes());
     }
 
     /// Sends a line as it is, to a server that may be gone.
     pub fn try_send_line(&mut self, line: &str) -> std::io::Result<()> {
+        self.try_send_bytes(line.as_bytes())?;
+        self.try_send_bytes(b"\n")
+    }
+
+    /// Sends bytes as they are, whole lines or not.
+    #[track_caller]
+    pub fn send_bytes(&mut self, bytes: &[u8]) {
+        self.try_send_bytes(bytes).unwrap_or_else(|error| {
+            panic!("the server does not listen ({error}); standard error: {}", self.stderr())
+        });
+    }
+
+    fn try_send_bytes(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         let stdin = self.stdin.as_mut().expect("standard input is still open");
-        stdin.write_all(line.as_bytes())?;
-        stdin.write_all(b"\n")?;
+        stdin.write_all(bytes)?;
         stdin.flush()
     }
 
@@ -262,7 +277,7 @@ impl Drop for ServerProcess {
     }
 }
 
-fn initialize_parameters() -> Value {
+pub(crate) fn initialize_parameters() -> Value {
     json!({
         "protocolVersion": LEGACY_VERSION,
         "capabilities": {},
@@ -270,7 +285,7 @@ fn initialize_parameters() -> Value {
     })
 }
 
-fn modern_meta() -> Value {
+pub(crate) fn modern_meta() -> Value {
     json!({
         "io.modelcontextprotocol/protocolVersion": MODERN_VERSION,
         "io.modelcontextprotocol/clientCapabilities": {},

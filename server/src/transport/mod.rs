@@ -5,3 +5,6 @@ mod signals;
 pub mod stdio;
 
 pub use signals::until_told_to_end;
+
+/// The size of one message of a client, over any transport. A home's recordings are sent in parts anyway.
+pub const MESSAGE_BYTES: usize = 4 << 20;

@@ -3,15 +3,21 @@
 use std::io;
 
 use rmcp::service::ServerInitializeError;
+use rmcp::transport::async_rw::AsyncRwTransport;
 use rmcp::transport::io::stdio_pipes;
 use rmcp::{ServerHandler, ServiceExt};
 
-/// Serves until the client closes its end; answers that are under way are still sent.
+use super::MESSAGE_BYTES;
+
+/// Serves until the client closes its end; answers that are under way are still sent. A line that is longer than
+/// [`MESSAGE_BYTES`] is passed over, with a note in the log: nobody knows which request it was.
 ///
 /// # Errors
 /// If the streams fail, or what the client says first is no request.
 pub async fn serve<S: ServerHandler>(service: S) -> io::Result<()> {
-    match service.serve(stdio_pipes()).await {
+    let (input, output) = stdio_pipes();
+    let transport = AsyncRwTransport::new_server(input, output).with_max_line_length(MESSAGE_BYTES);
+    match service.serve(transport).await {
         Ok(running) => running.waiting().await.map(drop).map_err(io::Error::other),
         // A client that only looks whether the program starts says nothing and leaves.
         Err(ServerInitializeError::ConnectionClosed(_)) => Ok(()),

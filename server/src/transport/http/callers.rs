@@ -84,7 +84,7 @@ pub(super) async fn refuse_strangers(
     match callers.check(request.headers(), ends.here.ip()) {
         Ok(()) => next.run(request).await,
         Err(reason) => {
-            tracing::warn!(from = %ends.there.ip(), reason, "a request was turned away");
+            tracing::debug!(from = %ends.there.ip(), reason, "a request was turned away");
             refused(StatusCode::FORBIDDEN, reason)
         }
     }

@@ -63,7 +63,8 @@ pub(super) async fn limit_rate(
     }
 }
 
-/// Reads the body, so that a client that sends it byte by byte keeps nobody else waiting.
+/// Reads the body before anything is judged, since most clients listen only after they have sent everything. Who
+/// sends byte by byte keeps nobody else waiting.
 pub(super) async fn read_body(State(load): State<Arc<Load>>, request: Request, next: Next) -> Response {
     let Limits { body: patience, body_bytes, .. } = load.limits;
     let (parts, body) = request.into_parts();
@@ -105,7 +106,7 @@ async fn read(
     while let Some(piece) = pieces.next().await {
         let piece = piece.map_err(|_| Unread::Broken)?;
         if read.len() + piece.len() > limit {
-            // Most clients listen for an answer only after they have sent everything.
+            // It is heard to its end all the same, for the same reason.
             pieces.for_each(|_| ready(())).await;
             return Err(Unread::TooLong);
         }

@@ -1,8 +1,10 @@
 //! Streamable HTTP: one MCP endpoint that many clients use at once, and that a hostile one cannot stop.
 //!
-//! A request passes, from the outside in: [`connections`] (how many, and how slowly they may send), [`callers`]
-//! (who may be behind a browser), [`load`] (how much and how often), [`token`] (who may ask at all), and only
-//! then rmcp's service, which speaks the protocol. Nothing here knows which tools are served.
+//! A request passes, from the outside in: [`connections`] (how many, and how slowly they may send), [`load`] (how
+//! much they may send), [`callers`] (who may be behind a browser), [`load`] again (how often, and how many at
+//! once), [`token`] (who may ask at all), and only then rmcp's service, which speaks the protocol. Nothing here knows
+//! which tools are served, and what any client can cause is logged at the level `debug` at most, so that a flood of
+//! requests is no flood of messages.
 
 mod callers;
 mod connections;
@@ -87,7 +89,12 @@ pub async fn bind(options: HttpOptions) -> Result<HttpServer, BindError> {
 }
 
 impl HttpServer {
-    /// The URL of the MCP endpoint, with the port that the system chose where 0 was asked for.
+    /// Where it listens, with the port that the system chose where 0 was asked for.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The URL of the MCP endpoint.
     pub fn url(&self) -> String {
         format!("http://{}{ENDPOINT}", self.address)
     }
@@ -124,12 +131,12 @@ fn router<S: ServerHandler + Clone>(
         .route_service(ENDPOINT, protocol)
         .layer(from_fn_with_state(shutdown.clone(), connections::end_listening_streams))
         .layer(from_fn_with_state(Arc::clone(&load), load::take_turns))
-        .layer(from_fn_with_state(Arc::clone(&load), load::read_body))
         .layer(from_fn_with_state(options.token.clone(), token::require))
         .route(HEALTH, get(async || "ok\n"))
         .fallback(async || refused(StatusCode::NOT_FOUND, "There is nothing here; MCP is spoken at /mcp."))
-        .layer(from_fn_with_state(load, load::limit_rate))
+        .layer(from_fn_with_state(Arc::clone(&load), load::limit_rate))
         .layer(from_fn_with_state(callers, callers::refuse_strangers))
+        .layer(from_fn_with_state(load, load::read_body))
 }
 
 /// The answer to a request that does not reach the protocol: words for the person who looks for the reason.

@@ -5,6 +5,7 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Duration;
 
 use super::Token;
+use crate::transport::MESSAGE_BYTES;
 
 /// How a server listens.
 #[derive(Debug, Clone)]
@@ -63,7 +64,7 @@ impl Default for Limits {
             connections: 512,
             head: Duration::from_secs(30),
             body: Duration::from_secs(30),
-            body_bytes: 4 << 20,
+            body_bytes: MESSAGE_BYTES,
             bodies_bytes: 64 << 20,
             write: Duration::from_secs(30),
             requests_per_second: REQUESTS_PER_SECOND,

@@ -45,7 +45,7 @@ impl SessionManager for Sessions {
     async fn create_session(&self) -> Result<(SessionId, Self::Transport), Self::Error> {
         let (id, transport) = self.sessions.create_session().await?;
         if let Some((silent, ())) = self.used(|used| used.push(id.clone(), ())) {
-            tracing::warn!(
+            tracing::debug!(
                 "there is no room for another session, so the one that was silent for longest ends"
             );
             self.end(&silent).await;
