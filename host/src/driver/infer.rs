@@ -38,9 +38,12 @@ impl Driver<'_> {
             .map(|things| {
                 let going_on = &going_on;
                 async move {
-                    // The semaphore is never closed, so that every permit comes.
-                    let _permit = going_on.acquire().await;
+                    // Permits come in order: where one is refused, an error that ends the run is on its way.
+                    let Ok(_permit) = going_on.acquire().await else { return (things, Vec::new()) };
                     let estimates = estimation.infer(&things.iter().collect::<Vec<_>>()).await;
+                    if estimates.iter().any(|estimate| estimate.outcome.is_err()) {
+                        going_on.close();
+                    }
                     (things, estimates)
                 }
             })

@@ -6,5 +6,5 @@ pub mod stdio;
 
 pub use signals::until_told_to_end;
 
-/// The size of one message of a client, over any transport. A home's recordings are sent in parts anyway.
-pub const MESSAGE_BYTES: usize = 4 << 20;
+/// The size of one message of a client, over any transport: the longest call that a tool allows fits into it.
+pub const MESSAGE_BYTES: usize = 16 << 20;
