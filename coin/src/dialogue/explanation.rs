@@ -118,26 +118,23 @@ pub fn explain(explained: &Explained<'_>) -> String {
     match explained.conclusion {
         Conclusion::Answered { reading, words, by, on } => {
             let person = by.map_or("A person".to_owned(), |user| roster.name(user).to_string());
-            let belongs = belongs(roster, reading, &thing);
+            let belongs = belongs(roster, reading, &thing, "");
             format!("{person} said on {on} that {} {belongs}. The words were: {}", thing.name, quoted(words))
         }
         Conclusion::Inferred { owners, confidence, standing, others, model } => {
-            let belongs = belongs(roster, Reading { owners, outside_household: false }, &thing);
+            let reading = Reading { owners, outside_household: false };
+            let belongs = belongs(roster, reading, &thing, adverb(standing, confidence));
             let percent = percent(confidence);
             let source = model.map_or(String::new(), |model| format!(", says the model {model:?}"));
             let conclusion = match standing {
-                Standing::Settled => format!("{name} very probably {belongs} ({percent}{source})."),
+                Standing::Settled => format!("{name} {belongs} ({percent}{source})."),
                 Standing::Open if others.is_empty() => {
-                    format!(
-                        "{name} most probably {belongs} ({percent}{source}), which is not sure enough to act on."
-                    )
+                    format!("{name} {belongs} ({percent}{source}), which is not sure enough to act on.")
                 }
                 Standing::Open => {
                     let others = list(roster, others, Joined::Or);
                     let it = thing.object;
-                    format!(
-                        "{name} most probably {belongs} ({percent}{source}), but {others} may own {it} too."
-                    )
+                    format!("{name} {belongs} ({percent}{source}), but {others} may own {it} too.")
                 }
             };
             format!("{conclusion} {}", grounds(explained, &thing))
@@ -145,21 +142,27 @@ pub fn explain(explained: &Explained<'_>) -> String {
     }
 }
 
-/// "belongs to Bob", "is shared by Bob and Mary", "belongs to somebody outside the household".
-fn belongs(roster: &Roster, reading: Reading, thing: &Thing) -> String {
+/// How sure a belief sounds.
+fn adverb(standing: Standing, confidence: f64) -> &'static str {
+    match standing {
+        Standing::Open => "most probably ",
+        Standing::Settled if confidence >= 0.95 => "almost certainly ",
+        Standing::Settled if confidence >= 0.80 => "very probably ",
+        Standing::Settled => "probably ",
+    }
+}
+
+/// "probably belongs to Bob", "is probably shared by Bob and Mary", "belongs to somebody outside the household".
+fn belongs(roster: &Roster, reading: Reading, thing: &Thing, adverb: &str) -> String {
     let (belongs, is) = if thing.is == "Are" { ("belong", "are") } else { ("belongs", "is") };
     let Reading { owners, outside_household } = reading;
+    let named = || list(roster, owners, Joined::And);
     match (owners.len(), outside_household) {
-        (_, true) if !owners.is_empty() => {
-            format!(
-                "{is} shared by {} with somebody outside the household",
-                list(roster, owners, Joined::And)
-            )
-        }
-        (0, _) => format!("{belongs} to somebody outside the household"),
-        (1, _) => format!("{belongs} to {}", list(roster, owners, Joined::And)),
-        (shared, _) if shared == roster.len() && shared > 2 => format!("{is} shared by everybody"),
-        _ => format!("{is} shared by {}", list(roster, owners, Joined::And)),
+        (0, _) => format!("{adverb}{belongs} to somebody outside the household"),
+        (_, true) => format!("{is} {adverb}shared by {} with somebody outside the household", named()),
+        (1, _) => format!("{adverb}{belongs} to {}", named()),
+        (shared, _) if shared == roster.len() && shared > 2 => format!("{is} {adverb}shared by everybody"),
+        _ => format!("{is} {adverb}shared by {}", named()),
     }
 }
 
@@ -192,8 +195,12 @@ fn grounds(explained: &Explained<'_>, thing: &Thing) -> String {
     };
     let beside = relative.as_ref().map_or(String::new(), |relative| {
         let other = Thing::new(&relative.class, None, [0.0; 3]);
-        let owned =
-            belongs(explained.roster, Reading { owners: relative.owners, outside_household: false }, &other);
+        let owned = belongs(
+            explained.roster,
+            Reading { owners: relative.owners, outside_household: false },
+            &other,
+            "",
+        );
         match relative.relation {
             SeenRelation::Near { distance } => format!("; {}, {distance:.1} m away, {owned}", other.name),
             SeenRelation::LooksAlike => format!("; {}, which looks alike, {owned}", other.name),
@@ -202,11 +209,16 @@ fn grounds(explained: &Explained<'_>, thing: &Thing) -> String {
     format!("{used}{beside}.")
 }
 
-/// "Bob in 3 sessions (last 0.8 days ago)".
+/// "Bob in 3 sessions (last 2 days ago)".
 fn in_sessions(roster: &Roster, user: &UserGrounds) -> String {
     let UserGrounds { user, sessions, days_ago } = *user;
     let sessions = if sessions == 1 { "1 session".to_owned() } else { format!("{sessions} sessions") };
-    format!("{} in {sessions} (last {days_ago:.1} days ago)", roster.name(user))
+    let last = match days_ago.round() {
+        _ if days_ago < 1.0 => "within a day".to_owned(),
+        1.0 => "a day ago".to_owned(),
+        days => format!("{days:.0} days ago"),
+    };
+    format!("{} in {sessions} (last {last})", roster.name(user))
 }
 
 /// A probability in whole percent; what is not certain is never said to be.

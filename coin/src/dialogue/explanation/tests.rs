@@ -14,7 +14,11 @@ fn used(sessions: &[u64]) -> Grounds {
         .iter()
         .enumerate()
         .filter(|&(_, &sessions)| sessions > 0)
-        .map(|(place, &sessions)| UserGrounds { user: crate::support::user(place), sessions, days_ago: 0.8 })
+        .map(|(place, &sessions)| UserGrounds {
+            user: crate::support::user(place),
+            sessions,
+            days_ago: 0.8 + 2.0 * place as f64,
+        })
         .collect();
     Grounds { users, relative: None }
 }
@@ -38,19 +42,19 @@ fn explained(class: &str, conclusion: Conclusion<'_>, grounds: Grounds) -> Strin
 #[rstest]
 #[case::settled(
     "marker", inferred(&[0], 0.9712, Standing::Settled, &[]), used(&[3, 1, 0]),
-    "The marker in the office very probably belongs to Bob (97 %). Bob used it in 3 sessions (last 0.8 days ago) and Mary in 1 session (last 0.8 days ago)."
+    "The marker in the office almost certainly belongs to Bob (97 %). Bob used it in 3 sessions (last within a day) and Mary in 1 session (last 3 days ago)."
 )]
 #[case::open(
     "scissors", inferred(&[0], 0.541, Standing::Open, &[1, 2]), used(&[1, 0, 0]),
-    "The scissors in the office most probably belong to Bob (54 %), but Mary or Tom may own them too. Bob used them in 1 session (last 0.8 days ago)."
+    "The scissors in the office most probably belong to Bob (54 %), but Mary or Tom may own them too. Bob used them in 1 session (last within a day)."
 )]
 #[case::open_without_rivals(
     "sofa", inferred(&[0, 1, 2], 0.8, Standing::Open, &[]), used(&[0, 0, 0]),
-    "The sofa in the office most probably is shared by everybody (80 %), which is not sure enough to act on. Nobody was seen using it; such things are mostly everybody's."
+    "The sofa in the office is most probably shared by everybody (80 %), which is not sure enough to act on. Nobody was seen using it; such things are mostly everybody's."
 )]
 #[case::pair(
     "marker", inferred(&[0, 2], 0.9999, Standing::Settled, &[]), used(&[9, 0, 9]),
-    "The marker in the office very probably is shared by Bob and Tom (over 99 %). Bob used it in 9 sessions (last 0.8 days ago) and Tom in 9 sessions (last 0.8 days ago)."
+    "The marker in the office is almost certainly shared by Bob and Tom (over 99 %). Bob used it in 9 sessions (last within a day) and Tom in 9 sessions (last 5 days ago)."
 )]
 fn an_inference_is_told_with_its_doubt_and_its_grounds(
     #[case] class: &str,
@@ -106,7 +110,7 @@ fn a_model_is_named() {
     let told = explained("marker", conclusion, Grounds::default());
     assert!(
         told.starts_with(
-            "The marker in the office very probably belongs to Bob (97 %, says the model \"claude\")."
+            "The marker in the office almost certainly belongs to Bob (97 %, says the model \"claude\")."
         ),
         "{told}"
     );
