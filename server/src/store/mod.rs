@@ -12,6 +12,7 @@ mod beliefs;
 mod error;
 mod household;
 mod import;
+mod inspection;
 mod map;
 mod migrations;
 mod open;
@@ -29,6 +30,7 @@ pub use beliefs::{Belief, Inference, RecordedAnswer, Retraction};
 pub use error::{BUSY_SECONDS, StoreError};
 pub use household::{Household, UserKey};
 pub use import::ImportSummary;
+pub use inspection::Inspection;
 pub use map::{ObjectKey, StoredObject};
 pub use usage::{UsageCounts, UsageLog, UsageRecord};
 
