@@ -5,7 +5,9 @@
 
 #[doc(hidden)]
 pub mod cli;
+mod doctor;
 pub mod episode;
+mod hosts;
 mod near_miss;
 pub mod service;
 pub mod store;

@@ -1,8 +1,12 @@
 //! The command line of `coin-server`: one file for each command.
 
+mod doctor;
 mod import;
+mod install;
 mod serve;
+mod uninstall;
 
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -16,6 +20,8 @@ Examples:
   coin-server import --episode fixtures/episodes/small-house --db home.db
   coin-server --db home.db                       # serve an MCP client on stdin and stdout
   coin-server --db home.db --read-only --tools get_usage_summary,list_objects
+  coin-server install claude-desktop             # let Claude Desktop start it; also claude-code, cursor, vscode
+  coin-server doctor                             # what is wrong, if anything
 
 Exit status: 0 done; 1 failed; 2 wrong use, a refused episode, or a database that cannot be opened.
 Log messages go to stderr; RUST_LOG=debug shows more of them.";
@@ -34,6 +40,12 @@ struct Arguments {
 enum Command {
     /// Import a recorded episode into a database, all of it or nothing
     Import(import::Import),
+    /// Enter the server into the configuration of a program that speaks MCP
+    Install(install::Install),
+    /// Take the server out of the configuration of such a program
+    Uninstall(uninstall::Uninstall),
+    /// Say what is wrong with the database, its permissions and the programs that use it; nothing is changed
+    Doctor(doctor::Doctor),
 }
 
 /// How the program ends.
@@ -74,11 +86,14 @@ pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     start_log();
     let outcome = match &arguments.command {
-        Some(Command::Import(import)) => import::run(import),
-        None => serve::run(&arguments.serve),
+        Some(Command::Import(import)) => import::run(import).map(|()| Exit::Done),
+        Some(Command::Install(install)) => install::run(install).map(|()| Exit::Done),
+        Some(Command::Uninstall(uninstall)) => uninstall::run(uninstall).map(|()| Exit::Done),
+        Some(Command::Doctor(doctor)) => doctor::run(doctor),
+        None => serve::run(&arguments.serve).map(|()| Exit::Done),
     };
     match outcome {
-        Ok(()) => Exit::Done.into(),
+        Ok(exit) => exit.into(),
         Err(Failure { exit, message }) => {
             say(&format!("coin-server: {message}"));
             exit.into()
@@ -90,6 +105,14 @@ pub fn run() -> ExitCode {
 #[expect(clippy::print_stderr, reason = "messages for the person at the terminal")]
 fn say(message: &str) {
     eprintln!("{message}");
+}
+
+/// Puts the result of a command that speaks no protocol on stdout. A reader that has seen enough is no failure.
+fn print(result: &str) -> Result<(), Failure> {
+    match std::io::stdout().write_all(result.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(failed(error)),
+        _ => Ok(()),
+    }
 }
 
 fn start_log() {
