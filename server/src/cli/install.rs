@@ -53,7 +53,7 @@ pub(super) fn run(install: &Install) -> Result<(), Failure> {
     let entry = entry(&database, install.tools.as_deref())?;
     let file = open(*host)?;
     let text = file.text().unwrap_or_default();
-    let changed = edit::enter(text, *host, name, &entry).map_err(|source| unchangeable(&file, source))?;
+    let changed = edit::enter(text, *host, name, &entry).map_err(|source| unchangeable(&file, &source))?;
     if install.print {
         let whole = json!({host.servers_key(): {name: entry.keys(host.transport())}});
         return print(&format!("{}\n{whole:#}\n", file.path().display()));
@@ -96,7 +96,7 @@ fn entry(database: &Path, tools: Option<&str>) -> Result<Entry, Failure> {
     Ok(Entry { command: text(&program)?, args })
 }
 
-pub(super) fn unchangeable(file: &ConfigurationFile, source: edit::EditError) -> Failure {
+pub(super) fn unchangeable(file: &ConfigurationFile, source: &edit::EditError) -> Failure {
     refused(format!("{} was not changed: {source}", file.path().display()))
 }
 

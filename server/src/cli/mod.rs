@@ -20,7 +20,7 @@ Examples:
   coin-server import --episode fixtures/episodes/small-house --db home.db
   coin-server --db home.db                       # serve an MCP client on stdin and stdout
   coin-server --db home.db --read-only --tools get_usage_summary,list_objects
-  coin-server install claude-desktop             # let Claude Desktop start it; also claude-code, cursor, vscode
+  coin-server install claude-desktop             # or claude-code, cursor, vscode
   coin-server doctor                             # what is wrong, if anything
 
 Exit status: 0 done; 1 failed; 2 wrong use, a refused episode, or a database that cannot be opened.

@@ -28,7 +28,7 @@ pub(super) fn run(uninstall: &Uninstall) -> Result<(), Failure> {
     let text = file.text().unwrap_or_default();
     let backup = file.backup();
     let remainder = edit::remove(text, backup.as_deref(), *host, name);
-    let kept = match remainder.map_err(|source| unchangeable(&file, source))? {
+    let kept = match remainder.map_err(|source| unchangeable(&file, &source))? {
         Remainder::Unchanged => {
             say(&format!("{} has no server {name:?}; nothing was changed.", host.title()));
             return Ok(());

@@ -36,7 +36,7 @@ fn findings(path: &Path, inspection: &Inspection) -> Vec<Finding> {
         advice(Level::Warning, SUBJECT, found, import(path))
     } else {
         let found =
-            format!("{} live there; things {things}, events {events}, answers {answers}", people.join(", "));
+            format!("people {}; things {things}, events {events}, answers {answers}", people.join(", "));
         finding(Level::Ok, SUBJECT, found)
     };
     vec![whole, home]

@@ -206,5 +206,4 @@ fn not_ours(name: &str) -> EditError {
 }
 
 #[cfg(test)]
-#[path = "edit_tests.rs"]
 mod tests;
