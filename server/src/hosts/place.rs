@@ -135,35 +135,35 @@ mod tests {
 
     fn ann(platform: Platform) -> Environment {
         let home = match platform {
-            Platform::Linux => "/home/ann",
-            Platform::MacOs => "/Users/ann",
-            Platform::Windows => r"C:\Users\ann",
+            Platform::Linux => "/people/ann",
+            Platform::MacOs => "/people/ann",
+            Platform::Windows => r"D:\people\ann",
         };
-        let appdata = (platform == Platform::Windows).then(|| r"C:\Users\ann\AppData\Roaming".into());
+        let appdata = (platform == Platform::Windows).then(|| r"D:\people\ann\AppData\Roaming".into());
         Environment { home: Some(home.into()), appdata, ..Environment::default() }
     }
 
     #[rstest]
-    #[case(Host::ClaudeDesktop, Platform::Linux, "/home/ann/.config/Claude/claude_desktop_config.json")]
+    #[case(Host::ClaudeDesktop, Platform::Linux, "/people/ann/.config/Claude/claude_desktop_config.json")]
     #[case(
         Host::ClaudeDesktop,
         Platform::MacOs,
-        "/Users/ann/Library/Application Support/Claude/claude_desktop_config.json"
+        "/people/ann/Library/Application Support/Claude/claude_desktop_config.json"
     )]
     #[case(
         Host::ClaudeDesktop,
         Platform::Windows,
-        r"C:\Users\ann\AppData\Roaming\Claude\claude_desktop_config.json"
+        r"D:\people\ann\AppData\Roaming\Claude\claude_desktop_config.json"
     )]
-    #[case(Host::ClaudeCode, Platform::Linux, "/home/ann/.claude.json")]
-    #[case(Host::ClaudeCode, Platform::MacOs, "/Users/ann/.claude.json")]
-    #[case(Host::ClaudeCode, Platform::Windows, r"C:\Users\ann\.claude.json")]
-    #[case(Host::Cursor, Platform::Linux, "/home/ann/.cursor/mcp.json")]
-    #[case(Host::Cursor, Platform::MacOs, "/Users/ann/.cursor/mcp.json")]
-    #[case(Host::Cursor, Platform::Windows, r"C:\Users\ann\.cursor\mcp.json")]
-    #[case(Host::VsCode, Platform::Linux, "/home/ann/.config/Code/User/mcp.json")]
-    #[case(Host::VsCode, Platform::MacOs, "/Users/ann/Library/Application Support/Code/User/mcp.json")]
-    #[case(Host::VsCode, Platform::Windows, r"C:\Users\ann\AppData\Roaming\Code\User\mcp.json")]
+    #[case(Host::ClaudeCode, Platform::Linux, "/people/ann/.claude.json")]
+    #[case(Host::ClaudeCode, Platform::MacOs, "/people/ann/.claude.json")]
+    #[case(Host::ClaudeCode, Platform::Windows, r"D:\people\ann\.claude.json")]
+    #[case(Host::Cursor, Platform::Linux, "/people/ann/.cursor/mcp.json")]
+    #[case(Host::Cursor, Platform::MacOs, "/people/ann/.cursor/mcp.json")]
+    #[case(Host::Cursor, Platform::Windows, r"D:\people\ann\.cursor\mcp.json")]
+    #[case(Host::VsCode, Platform::Linux, "/people/ann/.config/Code/User/mcp.json")]
+    #[case(Host::VsCode, Platform::MacOs, "/people/ann/Library/Application Support/Code/User/mcp.json")]
+    #[case(Host::VsCode, Platform::Windows, r"D:\people\ann\AppData\Roaming\Code\User\mcp.json")]
     fn every_host_has_its_file(#[case] host: Host, #[case] platform: Platform, #[case] expected: &str) {
         assert_eq!(configuration(host, platform, &ann(platform)), Ok(PathBuf::from(expected)));
     }
@@ -178,7 +178,7 @@ mod tests {
         let place = |host| configuration(host, Platform::Linux, &environment).unwrap();
         assert_eq!(place(Host::VsCode), PathBuf::from("/settings/Code/User/mcp.json"));
         assert_eq!(place(Host::ClaudeCode), PathBuf::from("/claude/.claude.json"));
-        assert_eq!(place(Host::Cursor), PathBuf::from("/home/ann/.cursor/mcp.json"));
+        assert_eq!(place(Host::Cursor), PathBuf::from("/people/ann/.cursor/mcp.json"));
     }
 
     #[rstest]

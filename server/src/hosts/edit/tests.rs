@@ -6,7 +6,7 @@ use super::*;
 fn entry() -> Entry {
     Entry {
         command: "/opt/coin/coin-server".to_owned(),
-        args: vec!["--db".to_owned(), "/home/ann/home.db".to_owned()],
+        args: vec!["--db".to_owned(), "/people/ann/home.db".to_owned()],
     }
 }
 
@@ -22,7 +22,7 @@ fn an_empty_file_gets_the_entry_alone() {
         "coin": {
           "type": "stdio",
           "command": "/opt/coin/coin-server",
-          "args": ["--db", "/home/ann/home.db"]
+          "args": ["--db", "/people/ann/home.db"]
         }
       }
     }
@@ -40,7 +40,7 @@ fn comments_and_other_servers_stay() {
         "files": {"command": "npx"}, // keep
         "coin": {
           "command": "/opt/coin/coin-server",
-          "args": ["--db", "/home/ann/home.db"],
+          "args": ["--db", "/people/ann/home.db"],
         },
       },
       "theme": "dark",
@@ -72,7 +72,7 @@ fn an_older_entry_is_brought_up_to_date_and_keeps_its_environment() {
     let made: Value = serde_json::from_str(&entered(text, Host::Cursor)).unwrap();
     let coin = &made["mcpServers"]["coin"];
     assert_eq!(coin["command"], "/opt/coin/coin-server");
-    assert_eq!(coin["args"][1], "/home/ann/home.db");
+    assert_eq!(coin["args"][1], "/people/ann/home.db");
     assert_eq!(coin["env"]["RUST_LOG"], "debug");
 }
 
