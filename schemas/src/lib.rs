@@ -7,6 +7,7 @@
 pub mod calibration;
 pub mod catalogue;
 pub mod chat;
+pub mod doctor;
 pub mod episode;
 pub mod events;
 pub mod experiment;

@@ -6,7 +6,9 @@
 #[doc(hidden)]
 pub mod cli;
 mod cursor;
+mod doctor;
 pub mod episode;
+mod hosts;
 mod near_miss;
 mod scene;
 pub mod service;

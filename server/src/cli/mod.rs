@@ -1,8 +1,12 @@
 //! The command line of `coin-server`: one file for each command.
 
+mod doctor;
 mod import;
+mod install;
 mod serve;
+mod uninstall;
 
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -18,6 +22,8 @@ Examples:
   coin-server --db home.db --read-only --tools get_usage_summary,list_objects
   coin-server --db home.db --http 127.0.0.1:8750 # serve many clients on this computer
   coin-server --db home.db --http 0.0.0.0:8750 --token-file token.txt    # and for other computers
+  coin-server install claude-desktop             # or claude-code, cursor, vscode
+  coin-server doctor                             # what is wrong, if anything
 
 Exit status: 0 done; 1 failed; 2 wrong use, a refused episode, or a database or address that cannot be opened.
 Log messages go to stderr; RUST_LOG=debug shows more of them.";
@@ -36,6 +42,12 @@ struct Arguments {
 enum Command {
     /// Import a recorded episode into a database, all of it or nothing
     Import(import::Import),
+    /// Enter the server into the configuration of a program that speaks MCP
+    Install(install::Install),
+    /// Take the server out of the configuration of such a program
+    Uninstall(uninstall::Uninstall),
+    /// Say what is wrong with the database, its permissions and the programs that use it; nothing is changed
+    Doctor(doctor::Doctor),
 }
 
 /// How the program ends.
@@ -76,11 +88,14 @@ pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     start_log();
     let outcome = match &arguments.command {
-        Some(Command::Import(import)) => import::run(import),
-        None => serve::run(&arguments.serve),
+        Some(Command::Import(import)) => import::run(import).map(|()| Exit::Done),
+        Some(Command::Install(install)) => install::run(install).map(|()| Exit::Done),
+        Some(Command::Uninstall(uninstall)) => uninstall::run(uninstall).map(|()| Exit::Done),
+        Some(Command::Doctor(doctor)) => doctor::run(doctor),
+        None => serve::run(&arguments.serve).map(|()| Exit::Done),
     };
     match outcome {
-        Ok(()) => Exit::Done.into(),
+        Ok(exit) => exit.into(),
         Err(Failure { exit, message }) => {
             say(&format!("coin-server: {message}"));
             exit.into()
@@ -92,6 +107,14 @@ pub fn run() -> ExitCode {
 #[expect(clippy::print_stderr, reason = "messages for the person at the terminal")]
 fn say(message: &str) {
     eprintln!("{message}");
+}
+
+/// Puts the result of a command that speaks no protocol on stdout. A reader that has seen enough is no failure.
+fn print(result: &str) -> Result<(), Failure> {
+    match std::io::stdout().write_all(result.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(failed(error)),
+        _ => Ok(()),
+    }
 }
 
 fn start_log() {

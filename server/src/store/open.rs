@@ -88,7 +88,7 @@ fn read_only(path: &Path) -> Result<Connection, StoreError> {
 }
 
 /// Makes a connection ready for reading, if the file is a home of the present version.
-fn look(mut connection: Connection) -> Result<Connection, StoreError> {
+pub(super) fn look(mut connection: Connection) -> Result<Connection, StoreError> {
     prepare(&mut connection)?;
     let version = match migrations::identify(&connection)? {
         Identity::Ours { version } => version,
@@ -109,7 +109,7 @@ fn has_log(path: &Path) -> bool {
 }
 
 /// The URI of a file that nobody changes.
-fn immutable(path: &Path) -> String {
+pub(super) fn immutable(path: &Path) -> String {
     let mut uri = "file:".to_owned();
     for byte in path.as_os_str().as_encoded_bytes() {
         match byte {
