@@ -7,6 +7,9 @@ use coin_schemas::report::Gate;
 
 use crate::calibration::{Assessment, Thresholds, UNCALIBRATED_CONFIDENCE};
 
+/// How often a thing is asked about when answers leave it open.
+pub const MOST_TIMES_ASKED: u32 = 2;
+
 /// Whether the gate wants to ask about the thing.
 ///
 /// * `risk`: conf(o) < λ̂ (conformal risk control).
@@ -56,6 +59,37 @@ pub fn compare_priority(
         }
     };
     by_doubt.then_with(|| compare_ids(left.0, right.0))
+}
+
+/// A thing that a person may be asked about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate<'a> {
+    /// The thing.
+    pub object: &'a ObjectId,
+    /// How often a person was asked about it already.
+    pub times_asked: u32,
+    /// What is thought of it; `None` where nothing is, which makes it the first to be asked about.
+    pub assessment: Option<&'a Assessment>,
+}
+
+/// Which thing a person is asked about first: one that was asked about less often, then the one that
+/// [`compare_priority`] puts first. Who was asked [`MOST_TIMES_ASKED`] times about a thing is not asked again.
+pub fn first_to_ask<'a>(
+    gate: Gate,
+    candidates: impl IntoIterator<Item = Candidate<'a>>,
+) -> Option<&'a ObjectId> {
+    candidates
+        .into_iter()
+        .filter(|candidate| candidate.times_asked < MOST_TIMES_ASKED)
+        .min_by(|left, right| {
+            left.times_asked.cmp(&right.times_asked).then_with(|| match (left.assessment, right.assessment) {
+                (Some(a), Some(b)) => compare_priority(gate, (left.object, a), (right.object, b)),
+                (None, Some(_)) => Ordering::Less,
+                (Some(_), None) => Ordering::Greater,
+                (None, None) => compare_ids(left.object, right.object),
+            })
+        })
+        .map(|candidate| candidate.object)
 }
 
 #[cfg(test)]

@@ -1,17 +1,14 @@
-//! What the tool server tells of a thing, and what the evidence model makes of it.
+//! What the tool server tells of a thing.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use coin::evidence::{EvidenceParameters, KnownRelative, Opinion, Relation, likeness_counts, posterior};
-use coin::owners::OwnerSetDistribution;
-use coin::roster::{Roster, RosterError};
 use coin::space::Neighbourhood;
-use coin_schemas::household::{ClassLabel, ObjectId, Owners, Source};
+use coin_schemas::household::ObjectId;
 use coin_schemas::model::{GivenContext, RelatedObjects};
 use coin_schemas::report::Withheld;
 use coin_schemas::tools::{
-    DEFAULT_K, DEFAULT_WINDOW_DAYS, GetUsageSummary, KnownOwnership, LookAlike, NearbyObjects,
-    NearbyObjectsResult, Neighbour, SimilarObjects, SimilarObjectsResult, UsageSummary, display_name,
+    DEFAULT_K, DEFAULT_WINDOW_DAYS, GetUsageSummary, LookAlike, NearbyObjects, NearbyObjectsResult,
+    Neighbour, SimilarObjects, SimilarObjectsResult, UsageSummary,
 };
 use futures::{StreamExt, TryStreamExt};
 use jiff::civil::DateTime;
@@ -111,71 +108,4 @@ async fn similar(server: &ToolServer, thing: &ObjectId) -> Result<Vec<LookAlike>
 pub fn related(context: &GivenContext) -> RelatedObjects {
     let near = context.nearby_objects.iter().map(|neighbour| neighbour.id.clone());
     near.chain(context.similar_objects.iter().map(|look_alike| look_alike.id.clone())).collect()
-}
-
-/// What the evidence model makes of a thing of this class in this context.
-///
-/// # Errors
-/// If the context names people who are not of the household.
-pub fn judge(
-    roster: &Roster,
-    class: &ClassLabel,
-    context: &GivenContext,
-    opinion: Opinion<'_>,
-    parameters: &EvidenceParameters,
-) -> Result<OwnerSetDistribution, RosterError> {
-    let (sessions, relatives) = weighed(roster, class, context)?;
-    Ok(posterior(&sessions, opinion, &relatives, parameters))
-}
-
-/// The least probability that the best owner set can be left with by a language model, whatever it says.
-///
-/// # Errors
-/// If the context names people who are not of the household.
-pub fn least_confidence(
-    roster: &Roster,
-    class: &ClassLabel,
-    context: &GivenContext,
-    parameters: &EvidenceParameters,
-) -> Result<f64, RosterError> {
-    let (sessions, relatives) = weighed(roster, class, context)?;
-    Ok(coin::evidence::least_confidence(&sessions, &relatives, parameters))
-}
-
-/// The sessions of every member, and the things with answered owners that bear on this one.
-fn weighed(
-    roster: &Roster,
-    class: &ClassLabel,
-    context: &GivenContext,
-) -> Result<(Vec<u64>, Vec<KnownRelative>), RosterError> {
-    let mut sessions = vec![0; roster.len()];
-    for usage in context.usage.iter().flat_map(|summary| &summary.user_summary) {
-        sessions[roster.index_of(usage.user_id.as_str())?.place()] = usage.sessions;
-    }
-    let mut relatives = Vec::new();
-    for neighbour in &context.nearby_objects {
-        let relation = Relation::Near { weight: neighbour.weight };
-        relatives.extend(answered(roster, neighbour.known_ownership.as_ref(), relation)?);
-    }
-    for look_alike in &context.similar_objects {
-        if likeness_counts(&display_name(class), &look_alike.name) {
-            let relation = Relation::LooksAlike { similarity: look_alike.similarity };
-            relatives.extend(answered(roster, look_alike.known_ownership.as_ref(), relation)?);
-        }
-    }
-    Ok((sessions, relatives))
-}
-
-/// Only what a person said is passed on: an inferred owner rests on the same evidence as the thing in question,
-/// and feeding it back would count that evidence twice.
-fn answered(
-    roster: &Roster,
-    known: Option<&KnownOwnership>,
-    relation: Relation,
-) -> Result<Option<KnownRelative>, RosterError> {
-    let owners: &Owners = match known {
-        Some(KnownOwnership { owners, source: Source::Answer, .. }) => owners,
-        _ => return Ok(None),
-    };
-    Ok(Some(KnownRelative { owners: roster.owner_set(owners)?, relation }))
 }

@@ -60,5 +60,13 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("list-objects.result.schema.json", schema_of::<tools::ListObjectsResult>()),
         ("list-users.arguments.schema.json", schema_of::<tools::ListUsers>()),
         ("list-users.result.schema.json", schema_of::<tools::ListUsersResult>()),
+        ("whose-is.arguments.schema.json", schema_of::<tools::WhoseIs>()),
+        ("whose-is.result.schema.json", schema_of::<tools::WhoseIsResult>()),
+        ("next-question.arguments.schema.json", schema_of::<tools::NextQuestion>()),
+        ("next-question.result.schema.json", schema_of::<tools::NextQuestionResult>()),
+        ("ask-owner.arguments.schema.json", schema_of::<tools::AskOwner>()),
+        ("ask-owner.result.schema.json", schema_of::<tools::AskOwnerResult>()),
+        ("add-user.arguments.schema.json", schema_of::<tools::AddUser>()),
+        ("add-user.result.schema.json", schema_of::<tools::AddUserResult>()),
     ]
 }

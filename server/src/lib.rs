@@ -5,8 +5,10 @@
 
 #[doc(hidden)]
 pub mod cli;
+mod cursor;
 pub mod episode;
 mod near_miss;
+mod scene;
 pub mod service;
 pub mod store;
 #[cfg(test)]

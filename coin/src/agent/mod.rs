@@ -21,15 +21,12 @@ pub use state::{Known, KnownSource, ObjectState};
 
 use crate::calibration::Thresholds;
 use crate::dialogue::Reading;
-use crate::gate::{compare_ids, compare_priority, wants_to_ask};
+use crate::gate::{Candidate, compare_ids, first_to_ask, wants_to_ask};
 use crate::sharing::ShareThresholds;
 
 /// BUILD-KNOWN: an inferred owner set counts as known from this probability on. Less would feed guesses back as
 /// facts, which is how the paper's own failure, the cup given to Mary, came about.
 pub const KNOWN_CONFIDENCE: f64 = 0.9;
-
-/// How often a thing is asked about when answers leave it open.
-pub const MOST_TIMES_ASKED: u32 = 2;
 
 /// The settings of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,8 +86,8 @@ impl Agent {
         Self { settings, objects, known: BTreeMap::new(), questions: 0, phase: Phase::Idle }
     }
 
-    /// Takes over what a person answered before the run; the thing is not asked about again. Call it before
-    /// `Started`. Unknown things and unresolved answers are passed over.
+    /// Takes over what a person answered before the run; a thing that is settled so is not asked about. Call it before
+    /// `Started`. Unknown things are passed over. An unresolved answer counts as a question that was asked.
     pub fn remember_answer(&mut self, object: &ObjectId, reading: Reading) {
         if let Some(state) = self.objects.get_mut(object) {
             state.apply_reading(reading);
@@ -261,20 +258,10 @@ impl Agent {
         if self.questions >= self.settings.max_questions {
             return self.finish(Stopped::MaxQuestions);
         }
-        let next = unsettled
-            .into_iter()
-            .filter(|(_, state)| state.may_be_asked())
-            .min_by(|left, right| {
-                left.1.times_asked().cmp(&right.1.times_asked()).then_with(|| {
-                    match (left.1.assessment(), right.1.assessment()) {
-                        (Some(a), Some(b)) => compare_priority(gate, (left.0, a), (right.0, b)),
-                        (None, Some(_)) => std::cmp::Ordering::Less,
-                        (Some(_), None) => std::cmp::Ordering::Greater,
-                        (None, None) => compare_ids(left.0, right.0),
-                    }
-                })
-            })
-            .map(|(object, _)| object.clone());
+        let candidates = unsettled.iter().filter(|(_, state)| state.may_be_asked()).map(|(object, state)| {
+            Candidate { object, times_asked: state.times_asked(), assessment: state.assessment() }
+        });
+        let next = first_to_ask(gate, candidates).cloned();
         match next {
             Some(object) => {
                 self.phase = Phase::Asking { object: object.clone() };

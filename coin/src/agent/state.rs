@@ -4,7 +4,7 @@ use coin_schemas::household::Score;
 use coin_schemas::model::RelatedObjects;
 use coin_schemas::report::Gate;
 
-use super::{AgentSettings, Inference, KNOWN_CONFIDENCE, MOST_TIMES_ASKED, Parts};
+use super::{AgentSettings, Inference, KNOWN_CONFIDENCE, Parts};
 use crate::calibration::Assessment;
 use crate::dialogue::Reading;
 use crate::owners::{OwnerSet, OwnerSetDistribution};
@@ -113,7 +113,7 @@ impl ObjectState {
     }
 
     pub(super) fn may_be_asked(&self) -> bool {
-        !self.closed_to_questions && self.times_asked < MOST_TIMES_ASKED
+        !self.closed_to_questions
     }
 
     pub(super) fn close_to_questions(&mut self) {

@@ -2,8 +2,15 @@
 //! QUESTION-GENERATION and UNDERSTAND-ANSWER).
 
 mod answer;
+mod choices;
+mod explanation;
 mod question;
 mod thing;
+mod wording;
 
 pub use answer::{Reading, read_answer};
+pub use choices::{Choice, Meaning, choices, meaning_of};
+pub use explanation::{
+    Conclusion, Explained, Grounds, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
+};
 pub use question::{QuestionContext, word_question};

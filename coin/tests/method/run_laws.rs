@@ -3,8 +3,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use coin::agent::{Agent, AgentSettings, Effect, Event, Inference, MOST_TIMES_ASKED, Reinference};
+use coin::agent::{Agent, AgentSettings, Effect, Event, Inference, Reinference};
 use coin::calibration::Thresholds;
+use coin::gate::MOST_TIMES_ASKED;
 use coin::gate::wants_to_ask;
 use coin::owners::OwnerSetDistribution;
 use coin_schemas::household::{ObjectId, Score};

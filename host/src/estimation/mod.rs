@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use coin::agent::{Inference, Parts};
 use coin::calibration::UNCALIBRATED_CONFIDENCE;
 use coin::common_sense::expect;
-use coin::evidence::{EvidenceParameters, Opinion};
+use coin::evidence::{EvidenceParameters, Opinion, WeighedContext};
 use coin::owners::OwnerSetDistribution;
 use coin::roster::{Roster, RosterError};
 use coin_schemas::household::{ObjectId, Score};
@@ -21,7 +21,7 @@ use coin_schemas::report::{ContextSource, Estimator, Reinference, Withheld};
 use jiff::civil::DateTime;
 
 use crate::client::ServerError;
-use crate::evidence::{context, judge, least_confidence, related, surroundings};
+use crate::evidence::{context, related, surroundings};
 use crate::model::{ModelError, ToolArguments};
 use crate::steps::{CalledTool, InferStep, Scored, StepError, Steps};
 use memory::{Basis, Memory};
@@ -135,7 +135,11 @@ impl<'a> Estimation<'a> {
             Some(scores) => Opinion::OfModel(scores),
             None => Opinion::from(expectation.as_ref()),
         };
-        judge(&self.told, &thing.class, context, opinion, &self.parameters)
+        Ok(self.weighed(thing, context)?.posterior(opinion, &self.parameters))
+    }
+
+    fn weighed(&self, thing: &TaskObject, context: &GivenContext) -> Result<WeighedContext, StepError> {
+        WeighedContext::new(&self.told, &thing.class, context)
             .map_err(|error| StepError::Unusable { reason: error.to_string() })
     }
 
@@ -317,15 +321,14 @@ impl<'a> Estimation<'a> {
 
     /// Whether the evidence settles a thing whatever a model says. What cannot be told here fails where it is weighed.
     fn is_decided(&self, thing: &TaskObject, context: &GivenContext) -> bool {
-        least_confidence(&self.told, &thing.class, context, &self.parameters)
-            .is_ok_and(|least| least >= DECIDED)
+        self.weighed(thing, context)
+            .is_ok_and(|weighed| weighed.least_confidence(&self.parameters) >= DECIDED)
     }
 
     fn fuse(&self, thing: &TaskObject, context: &GivenContext) -> Result<Inference, StepError> {
         let (opinion, remark) = self.memory.opinion(&thing.id).unzip();
         let fused = self.weigh(thing, context, opinion.as_deref())?;
-        let evidence = judge(&self.told, &thing.class, context, Opinion::None, &self.parameters)
-            .map_err(|error| StepError::Unusable { reason: error.to_string() })?;
+        let evidence = self.weighed(thing, context)?.posterior(Opinion::None, &self.parameters);
         let parts = Parts { model: opinion, evidence: evidence.marginals(self.told.len()) };
         Ok(Inference { parts: Some(parts), problem: remark.flatten(), ..self.inference(fused, context) })
     }

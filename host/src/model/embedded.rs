@@ -9,7 +9,7 @@ use async_trait::async_trait;
 use coin::calibration::EMBEDDED_MODEL;
 use coin::common_sense::{Tendency, expect, tendency};
 use coin::dialogue::{QuestionContext, read_answer, word_question};
-use coin::evidence::{EvidenceParameters, Opinion};
+use coin::evidence::{EvidenceParameters, Opinion, WeighedContext};
 use coin::roster::Roster;
 use coin_schemas::model::{
     GivenContext, OwnershipReply, OwnershipsReply, ReadingReply, SharingReply, Task, TaskObject,
@@ -21,7 +21,6 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 
 use super::{ChatModel, ChatReply, ChatRequest, Message, ModelError, ToolArguments, ToolCall};
-use crate::evidence::judge;
 
 /// The tools that the evidence model reads.
 const USAGE: &str = "get_usage_summary";
@@ -79,8 +78,8 @@ impl EmbeddedModel {
     ) -> Result<OwnershipReply, ModelError> {
         let expectation = expect(object.class.as_str(), roster);
         let opinion = Opinion::from(expectation.as_ref());
-        let distribution =
-            judge(roster, &object.class, context, opinion, &self.parameters).map_err(malformed)?;
+        let weighed = WeighedContext::new(roster, &object.class, context).map_err(malformed)?;
+        let distribution = weighed.posterior(opinion, &self.parameters);
         Ok(OwnershipReply {
             ownership_distribution: roster.scores(&distribution.marginals(roster.len())),
             owner_sets: Some(distribution.to_named(roster)),

@@ -28,7 +28,7 @@ pub(super) struct Serve {
     /// Offer only the tools that look, and write nothing to the database
     #[arg(long)]
     read_only: bool,
-    /// The tools to offer: all, core (those that a program with an ownership loop of its own needs), or names
+    /// The tools to offer: all, core (the paper's four, for a program with an ownership loop of its own), or names
     #[arg(long, value_name = "all|core|NAME,…", default_value = "all")]
     tools: ToolSelection,
     /// Serve many clients over HTTP at /mcp, such as 127.0.0.1:8750; port 0 takes a free one, and stderr names it

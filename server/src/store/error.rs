@@ -105,6 +105,9 @@ pub enum StoreError {
     /// Other processes kept the write lock.
     #[error("the database is locked by another process for over {BUSY_SECONDS} seconds; try again")]
     Locked,
+    /// Nobody waits for the call any more.
+    #[error("the call was cancelled: nothing of it was stored")]
+    Interrupted,
     /// The file is damaged, or holds what this program never writes.
     #[error("the database is damaged ({detail}); restore it from a copy")]
     Damaged {
@@ -143,7 +146,7 @@ impl StoreError {
     }
 
     /// What stands in the file is nothing that this program writes.
-    pub(super) fn damaged(detail: impl Into<String>) -> Self {
+    pub(crate) fn damaged(detail: impl Into<String>) -> Self {
         Self::Damaged { detail: detail.into() }
     }
 }
@@ -175,6 +178,7 @@ impl From<rusqlite::Error> for StoreError {
             Some(ErrorCode::SystemIoFailure) => Self::Disk { detail: with_code(&source) },
             Some(ErrorCode::CannotOpen) => Self::Unopenable { detail: with_code(&source) },
             Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => Self::Locked,
+            Some(ErrorCode::OperationInterrupted) => Self::Interrupted,
             Some(ErrorCode::DatabaseCorrupt) => Self::Damaged { detail: source.to_string() },
             _ => Self::Failed { source: Box::new(source) },
         }

@@ -1,6 +1,7 @@
 //! The home itself: its people and its present.
 
 use coin::captions::{civil_seconds, from_civil_seconds};
+use coin::owners::OwnerSet;
 use coin::roster::{Roster, UserIndex};
 use coin_schemas::household::{Background, UserName, Users};
 use jiff::civil::DateTime;
@@ -17,6 +18,8 @@ pub struct UserKey(pub(super) i64);
 pub struct Household {
     roster: Roster,
     keys: Vec<UserKey>,
+    /// In the order of the roster; `None` for those who were there from the beginning.
+    joined_at: Vec<Option<i64>>,
 }
 
 impl Household {
@@ -33,6 +36,11 @@ impl Household {
         self.keys[user.place()]
     }
 
+    /// Those who joined after a moment of local time, in seconds.
+    pub fn newcomers_after(&self, seconds: i64) -> OwnerSet {
+        self.roster.indices().filter(|user| self.joined_at[user.place()] > Some(seconds)).collect()
+    }
+
     /// The member of this key.
     pub fn user(&self, key: UserKey) -> Option<UserIndex> {
         self.keys.iter().position(|&other| other == key).and_then(UserIndex::new)
@@ -45,22 +53,24 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn household(&self) -> Result<Option<Household>, StoreError> {
-        let mut statement =
-            self.transaction.prepare_cached("SELECT user_key, name, role, occupation FROM users")?;
+        let mut statement = self
+            .transaction
+            .prepare_cached("SELECT user_key, name, role, occupation, joined_at FROM users")?;
         let mut rows = statement.query([])?;
-        let mut people: Vec<(UserName, UserKey)> = Vec::new();
+        let mut people: Vec<(UserName, UserKey, Option<i64>)> = Vec::new();
         let mut users = Users::new();
         while let Some(row) = rows.next()? {
             let name = UserName::new(row.get::<_, String>(1)?)?;
             users.insert(name.clone(), Background { role: row.get(2)?, occupation: row.get(3)? });
-            people.push((name, UserKey(row.get(0)?)));
+            people.push((name, UserKey(row.get(0)?), row.get(4)?));
         }
         if people.is_empty() {
             return Ok(None);
         }
         people.sort();
         let roster = Roster::new(&users)?;
-        Ok(Some(Household { roster, keys: people.into_iter().map(|(_, key)| key).collect() }))
+        let (keys, joined_at) = people.into_iter().map(|(_, key, joined_at)| (key, joined_at)).unzip();
+        Ok(Some(Household { roster, keys, joined_at }))
     }
 
     /// The name of the recording that the home was imported from.

@@ -8,12 +8,17 @@
 //! acknowledged survives the death of the process and a power cut. Several processes may use one file; a write
 //! waits up to [`BUSY_SECONDS`] seconds for another's.
 
+mod answers;
 mod beliefs;
+mod call;
+mod connections;
 mod error;
+mod forms;
 mod household;
 mod import;
 mod map;
 mod migrations;
+mod newcomers;
 mod open;
 #[cfg(test)]
 mod tests;
@@ -21,16 +26,22 @@ mod usage;
 
 use std::ops::Deref;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Arc;
 
-use rusqlite::{Connection, Transaction, TransactionBehavior};
+use rusqlite::{Transaction, TransactionBehavior};
 
-pub use beliefs::{Belief, Inference, RecordedAnswer, Retraction};
+pub use answers::{OpenQuestions, RecordedAnswer, Refusal, Retraction};
+pub use beliefs::{Belief, Inference};
+pub use call::{Call, Progress, Stage};
 pub use error::{BUSY_SECONDS, StoreError};
+pub use forms::{FORM_KEY_BYTES, FormSerial, SERIAL_BYTES, Spending};
 pub use household::{Household, UserKey};
 pub use import::ImportSummary;
 pub use map::{ObjectKey, StoredObject};
+pub(crate) use usage::EVENTS_BETWEEN_REPORTS;
 pub use usage::{UsageCounts, UsageLog, UsageRecord};
+
+use connections::Connections;
 
 /// What may be done with a store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,11 +53,13 @@ pub enum Access {
     ReadOnly,
 }
 
-/// A home's memory. It may be shared between threads; calls follow one another.
-#[derive(Debug)]
+/// A home's memory. It may be shared between threads, and a copy speaks of the same home: reads go on beside one
+/// another and beside a write, writes follow one another.
+#[derive(Debug, Clone)]
 pub struct Store {
-    connection: Mutex<Connection>,
+    connections: Arc<Connections>,
     access: Access,
+    call: Call,
 }
 
 impl Store {
@@ -55,8 +68,8 @@ impl Store {
     /// # Errors
     /// [`StoreError::Open`], which names the file and the reason.
     pub fn open(path: &Path, access: Access) -> Result<Self, StoreError> {
-        let connection = open::file(path, access).map_err(|source| source.opening(path))?;
-        Ok(Self { connection: Mutex::new(connection), access })
+        let connections = Connections::to_file(path, access).map_err(|source| source.opening(path))?;
+        Ok(Self { connections: Arc::new(connections), access, call: Call::default() })
     }
 
     /// Opens a store that is gone when it is dropped.
@@ -64,12 +77,24 @@ impl Store {
     /// # Errors
     /// If there is no memory left.
     pub fn open_in_memory() -> Result<Self, StoreError> {
-        Ok(Self { connection: Mutex::new(open::memory()?), access: Access::ReadWrite })
+        let connections = Arc::new(Connections::to_memory()?);
+        Ok(Self { connections, access: Access::ReadWrite, call: Call::default() })
     }
 
     /// What the store was opened for.
     pub fn access(&self) -> Access {
         self.access
+    }
+
+    /// The same home, for one call that may be interrupted and whose progress may be followed.
+    #[must_use]
+    pub fn during(&self, call: &Call) -> Self {
+        Self { call: call.clone(), ..self.clone() }
+    }
+
+    /// The call that the store is used for.
+    pub(crate) fn call(&self) -> &Call {
+        &self.call
     }
 
     /// Looks at one state of the home.
@@ -80,11 +105,12 @@ impl Store {
         &self,
         work: impl FnOnce(&Reader<'_>) -> Result<T, E>,
     ) -> Result<T, E> {
-        let mut connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut lent = self.connections.reader();
+        let connection = lent.connection().ok_or(StoreError::Interrupted)?;
+        let _visit = self.call.enter(connection)?;
         let transaction =
             connection.transaction_with_behavior(TransactionBehavior::Deferred).map_err(StoreError::from)?;
-        let value = work(&Reader { transaction })?;
-        Ok(value)
+        work(&Reader { transaction })
     }
 
     /// Changes the home, all or nothing: where `work` fails, nothing of it is kept.
@@ -95,14 +121,13 @@ impl Store {
         &self,
         work: impl FnOnce(&Writer<'_>) -> Result<T, E>,
     ) -> Result<T, E> {
-        if self.access == Access::ReadOnly {
-            return Err(StoreError::OpenedReadOnly.into());
-        }
-        let mut connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut connection = self.connections.writer()?;
+        let _visit = self.call.enter(&connection)?;
         let transaction =
             connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(StoreError::from)?;
-        let writer = Writer { reader: Reader { transaction } };
+        let writer = Writer { reader: Reader { transaction }, call: &self.call };
         let value = work(&writer)?;
+        self.call.go_on()?;
         writer.reader.transaction.commit().map_err(StoreError::from)?;
         Ok(value)
     }
@@ -118,6 +143,7 @@ pub struct Reader<'connection> {
 #[derive(Debug)]
 pub struct Writer<'connection> {
     reader: Reader<'connection>,
+    call: &'connection Call,
 }
 
 impl<'connection> Deref for Writer<'connection> {

@@ -59,6 +59,19 @@ fn read_write(path: &Path) -> Result<Connection, StoreError> {
     Ok(connection)
 }
 
+/// One more connection to a file that is open already, for reading.
+pub(super) fn another(path: &Path, access: Access) -> Result<Connection, StoreError> {
+    if access == Access::ReadOnly {
+        return file(path, access);
+    }
+    // It may write as far as SQLite is concerned, because readers of a write-ahead log have to lock it.
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let mut connection = Connection::open_with_flags(path, flags)?;
+    prepare(&mut connection)?;
+    connection.execute_batch("PRAGMA query_only = ON; PRAGMA cache_size = -4000;")?;
+    Ok(connection)
+}
+
 fn read_only(path: &Path) -> Result<Connection, StoreError> {
     if !path.try_exists().map_err(|source| StoreError::File { source })? {
         return Err(StoreError::Missing);

@@ -5,7 +5,10 @@ use coin::usage::UsageEvent;
 
 use super::household::{Household, UserKey};
 use super::map::ObjectKey;
-use super::{Reader, StoreError, Writer};
+use super::{Progress, Reader, Stage, StoreError, Writer};
+
+/// After how many events it is said how far recording has come: often enough for somebody who waits or gives up.
+pub(crate) const EVENTS_BETWEEN_REPORTS: usize = 500;
 
 /// An event to store.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,7 +120,11 @@ impl Writer<'_> {
              ON CONFLICT DO NOTHING",
         )?;
         let mut counts = UsageCounts::default();
-        for (object, at, record) in order {
+        let total = records.len() as u64;
+        for (done, (object, at, record)) in (0..).zip(order) {
+            if done % EVENTS_BETWEEN_REPORTS == 0 {
+                self.call.advance(Progress { stage: Stage::Storing, done: done as u64, total })?;
+            }
             let Observation { actor, action, .. } = record.observation;
             let actor = actor.map(|user| household.key(user).0);
             if statement.execute((object, at, record.caption, actor, action.code()))? == 0 {

@@ -25,6 +25,26 @@ pub(crate) enum ToolError {
         /// Arguments that fit.
         example: &'static str,
     },
+    /// A person has to be asked, and the client shows no forms.
+    #[error(
+        "this client cannot show a form to a person. Ask in the chat: {question:?} Then call ask_owner with \
+         object_id {object_id:?} and what the person said as owner."
+    )]
+    Unreachable {
+        /// The question, ready to be asked.
+        question: String,
+        /// The thing.
+        object_id: String,
+    },
+    /// A form came back that has counted before.
+    #[error("this form has been answered before, and a form counts once; call ask_owner again for a new one")]
+    SpentForm,
+    /// The operating system gives no random numbers.
+    #[error("no form can be made, because the operating system gives no random numbers: {reason}")]
+    NoRandomness {
+        /// What it says.
+        reason: String,
+    },
     /// The store refused or failed.
     #[error(transparent)]
     Store(#[from] StoreError),

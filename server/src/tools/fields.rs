@@ -109,31 +109,12 @@ pub(super) fn time(field: &str, given: Option<&str>) -> Result<Option<DateTime>,
         .transpose()
 }
 
-/// The home's present: that of the recording that it was imported from, moved on by what was recorded since;
-/// otherwise the wall clock's local time.
-pub(super) fn present(reader: &Reader<'_>) -> Result<DateTime, StoreError> {
-    Ok(match reader.clock()? {
-        Some(clock) => clock,
-        None => whole_seconds(Zoned::now().datetime()),
-    })
-}
-
-fn whole_seconds(time: DateTime) -> DateTime {
-    time.with().subsec_nanosecond(0).build().unwrap_or(time)
-}
-
 /// A wrong value as a message repeats it: quoted, and not longer than a line.
 pub(super) fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED_CHARACTERS) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
         None => format!("{text:?}"),
     }
-}
-
-/// A number to four decimals, as distances, weights and similarities are given.
-pub(super) fn four_decimals(number: f64) -> f64 {
-    // Adding zero turns -0.0 into 0.0.
-    (number * 1e4).round() / 1e4 + 0.0
 }
 
 pub(super) fn object_ref(object: &StoredObject) -> ObjectRef {

@@ -1,16 +1,12 @@
 //! `list_objects`: the things of the home and what is believed of them, page by page.
 
-use std::fmt::Write as _;
-
 use coin_schemas::household::UserName;
 use coin_schemas::tools::{ListObjects, ListObjectsResult, ListedObject, MAX_LIMIT, display_name};
 
 use super::fields::{self, quoted};
 use super::{Effect, Tool, ToolError};
+use crate::cursor;
 use crate::store::{Belief, Reader, Store, StoredObject};
-
-/// What a cursor begins with; another layout of cursors would begin with something else.
-const CURSOR_MARK: &str = "after-";
 
 pub(super) struct ListObjectsTool;
 
@@ -18,9 +14,9 @@ impl Tool for ListObjectsTool {
     const NAME: &'static str = "list_objects";
     const TITLE: &'static str = "Things in the home";
     const DESCRIPTION: &'static str = "The things in the home, by id, with position and who is held to own them. \
-        Other tools take the ids exactly as they stand here. Filter by class, owner or settled (false: things \
-        about which a person may have to be asked). Where next_cursor is given there are more: call again \
-        with it as cursor.";
+        Other tools take the ids exactly as they stand here. Owners are those that a person named or a model \
+        handed in; ask whose_is about any other thing. Filter by class, owner or settled. Where next_cursor is \
+        given there are more: call again with it as cursor.";
     const EXAMPLE: &'static str = r#"{"class": "marker", "settled": false}"#;
     const EFFECT: Effect = Effect::Reads;
 
@@ -50,7 +46,7 @@ impl Tool for ListObjectsTool {
             let objects: Vec<ListedObject> =
                 rest.by_ref().take(limit).map(|(object, belief)| listed(&object, belief.as_ref())).collect();
             let more = rest.peek().is_some();
-            let next_cursor = objects.last().filter(|_| more).map(|last| write_cursor(last.id.as_str()));
+            let next_cursor = objects.last().filter(|_| more).map(|last| cursor::after(last.id.as_str()));
             Ok(ListObjectsResult { objects, total, next_cursor })
         })
     }
@@ -102,33 +98,14 @@ fn listed(object: &StoredObject, belief: Option<&Belief>) -> ListedObject {
     }
 }
 
-/// A cursor names the last thing of its page, so that a thing that is added meanwhile moves no page.
-fn write_cursor(last_id: &str) -> String {
-    let mut cursor = CURSOR_MARK.to_owned();
-    for byte in last_id.bytes() {
-        // Writing to a string does not fail.
-        let _ = write!(cursor, "{byte:02x}");
-    }
-    cursor
-}
-
-fn read_cursor(cursor: &str) -> Result<String, ToolError> {
-    let refuse = || {
+fn read_cursor(given: &str) -> Result<String, ToolError> {
+    cursor::read(given).ok_or_else(|| {
         ToolError::field(
             "cursor",
             format!(
                 "{} is no cursor of list_objects; give next_cursor of the page before, or leave it out for the first page",
-                quoted(cursor)
+                quoted(given)
             ),
         )
-    };
-    let digits = cursor.strip_prefix(CURSOR_MARK).filter(|digits| digits.is_ascii()).ok_or_else(refuse)?;
-    let bytes = digits
-        .as_bytes()
-        .chunks(2)
-        .map(|pair| str::from_utf8(pair).ok().and_then(|pair| u8::from_str_radix(pair, 16).ok()))
-        .collect::<Option<Vec<u8>>>()
-        .filter(|_| digits.len() % 2 == 0)
-        .ok_or_else(refuse)?;
-    String::from_utf8(bytes).map_err(|_| refuse())
+    })
 }

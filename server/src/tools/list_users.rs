@@ -1,9 +1,11 @@
 //! `list_users`: who lives in the home.
 
+use coin::roster::Roster;
+use coin_schemas::household::Background;
 use coin_schemas::tools::{ListUsers, ListUsersResult, ListedUser};
 
 use super::{Effect, Tool, ToolError};
-use crate::store::{Household, Store};
+use crate::store::Store;
 
 pub(super) struct ListUsersTool;
 
@@ -20,16 +22,18 @@ impl Tool for ListUsersTool {
 
     fn call(store: &Store, _: ListUsers) -> Result<ListUsersResult, ToolError> {
         let household = store.read(|reader| Ok::<_, ToolError>(reader.household()?))?;
-        let users = household.as_ref().map(Household::roster).into_iter().flat_map(|roster| {
-            roster.indices().map(|user| {
-                let background = roster.background(user);
-                ListedUser {
-                    name: roster.name(user).clone(),
-                    role: background.role.clone(),
-                    occupation: background.occupation.clone(),
-                }
-            })
-        });
-        Ok(ListUsersResult { users: users.collect() })
+        let users = household.map(|household| listed(household.roster())).unwrap_or_default();
+        Ok(ListUsersResult { users })
     }
+}
+
+/// The members by name.
+pub(super) fn listed(roster: &Roster) -> Vec<ListedUser> {
+    roster
+        .indices()
+        .map(|user| {
+            let Background { role, occupation } = roster.background(user).clone();
+            ListedUser { name: roster.name(user).clone(), role, occupation }
+        })
+        .collect()
 }

@@ -3,14 +3,18 @@
 //! A tool's schemas are derived from the types that parse its arguments and make its result. Whatever a caller
 //! can do wrong is answered with a [`ToolError`], whose text is meant for the model that made the call.
 
+mod add_user;
 mod arguments;
+mod ask_owner;
+mod conversation;
+pub(crate) mod document;
 mod error;
 mod fields;
 mod get_usage_summary;
-mod known_ownership;
 mod list_objects;
 mod list_users;
 mod nearby_objects;
+mod next_question;
 mod record_answer;
 mod record_scores;
 mod record_usage;
@@ -20,6 +24,7 @@ mod schema;
 mod similar_objects;
 #[cfg(test)]
 mod tests;
+mod whose_is;
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -27,18 +32,21 @@ use serde::de::DeserializeOwned;
 
 use crate::store::Store;
 
+pub(crate) use ask_owner::FORM_LIFETIME;
+pub(crate) use conversation::{Form, FormState, Person, Reply, Turn};
 pub(crate) use error::ToolError;
 pub(crate) use registry::Registry;
 pub use registry::{ToolSelection, UnknownTool};
 
-/// What a tool does to the home. Every tool may be called again with the same arguments without a further
-/// effect, none destroys anything, and none reaches outside the home.
+/// What a tool does to the home. None destroys anything, and none reaches outside the home.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Effect {
     /// It looks.
     Reads,
-    /// It records something.
+    /// It records something. The same call again has no further effect.
     Records,
+    /// It asks a person and records the answer. The same call again asks again.
+    Asks,
 }
 
 /// A tool: its words and what it does.
@@ -59,6 +67,15 @@ pub(crate) trait Tool {
     /// What it gives.
     type Output: Serialize + JsonSchema;
 
-    /// Does it.
+    /// Does it, without a person to ask.
     fn call(store: &Store, arguments: Self::Arguments) -> Result<Self::Output, ToolError>;
+
+    /// Does it, or gives a form that a person has to fill in first.
+    fn converse(
+        store: &Store,
+        arguments: Self::Arguments,
+        _person: Person,
+    ) -> Result<Turn<Self::Output>, ToolError> {
+        Self::call(store, arguments).map(Turn::Done)
+    }
 }

@@ -1,11 +1,11 @@
 //! `nearby_objects`: what lies close to a thing.
 
-use coin::space::{Neighbourhood, neighbours};
-use coin_schemas::tools::{MAX_K, NearbyObjects, NearbyObjectsResult, Neighbour, display_name};
+use coin::space::Neighbourhood;
+use coin_schemas::tools::{MAX_K, NearbyObjects, NearbyObjectsResult};
 
-use super::fields::{self, four_decimals};
-use super::known_ownership::known_ownership;
+use super::fields;
 use super::{Effect, Tool, ToolError};
+use crate::scene::Scene;
 use crate::store::Store;
 
 const SIGMAS: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
@@ -36,30 +36,7 @@ impl Tool for NearbyObjectsTool {
         };
         store.read(|reader| {
             let object = fields::object(reader, &arguments.object_id)?;
-            let household = fields::household(reader)?;
-            // They come by id, so their place stands for the id where weights and distances are equal.
-            let objects = reader.objects()?;
-            let others = objects.iter().enumerate().filter(|(_, other)| other.key != object.key);
-            let near = neighbours(
-                object.position,
-                others.map(|(place, other)| (place, other.position)),
-                &neighbourhood,
-            );
-            let nearby_objects = near
-                .into_iter()
-                .map(|near| {
-                    let other = &objects[near.item];
-                    let belief = reader.belief(other.key)?;
-                    Ok(Neighbour {
-                        id: other.id.clone(),
-                        name: display_name(&other.class),
-                        distance: four_decimals(near.distance),
-                        weight: four_decimals(near.weight),
-                        known_ownership: belief
-                            .and_then(|belief| known_ownership(household.roster(), &belief)),
-                    })
-                })
-                .collect::<Result<_, ToolError>>()?;
+            let nearby_objects = Scene::new(reader)?.nearby(&object, &neighbourhood)?;
             Ok(NearbyObjectsResult { object: fields::placed_object_ref(&object), nearby_objects })
         })
     }

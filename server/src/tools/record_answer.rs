@@ -8,7 +8,8 @@ use jiff::civil::DateTime;
 
 use super::fields;
 use super::{Effect, Tool, ToolError};
-use crate::store::{Household, RecordedAnswer, Store};
+use crate::scene;
+use crate::store::{Household, RecordedAnswer, Store, StoreError, StoredObject, Writer};
 
 pub(super) struct RecordAnswerTool;
 
@@ -35,12 +36,9 @@ impl Tool for RecordAnswerTool {
         store.write(|writer| {
             let object = fields::object(writer, &arguments.object_id)?;
             let household = fields::household(writer)?;
-            let present = fields::present(writer)?;
+            let present = scene::present(writer)?;
             let (answer, owners) = read_answer(&arguments, &household, as_of.unwrap_or(present))?;
-            let history = writer.answers(&household, object.key)?;
-            if !history.last().is_some_and(|latest| repeats(&answer, latest, as_of)) {
-                writer.add_answer(&household, object.key, &answer)?;
-            }
+            keep(writer, &household, &object, &answer, as_of)?;
             Ok(RecordAnswerResult {
                 object: fields::object_ref(&object),
                 owners: household.roster().owners(owners),
@@ -49,6 +47,22 @@ impl Tool for RecordAnswerTool {
             })
         })
     }
+}
+
+/// Adds an answer to the history of a thing, unless it repeats the latest one. `as_of` is the time that the caller
+/// gave, where one was given.
+pub(super) fn keep(
+    writer: &Writer<'_>,
+    household: &Household,
+    object: &StoredObject,
+    answer: &RecordedAnswer,
+    as_of: Option<DateTime>,
+) -> Result<(), StoreError> {
+    let history = writer.answers(household, object.key)?;
+    if !history.last().is_some_and(|latest| repeats(answer, latest, as_of)) {
+        writer.add_answer(household, object.key, answer)?;
+    }
+    Ok(())
 }
 
 fn read_answer(
@@ -85,6 +99,7 @@ fn read_answer(
         at,
         status,
         retracted_at: None,
+        reopened_at: None,
     };
     Ok((answer, owners))
 }

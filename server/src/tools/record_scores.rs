@@ -1,6 +1,5 @@
 //! `record_scores`: what a model concluded about the owner of a thing.
 
-use coin::calibration::Thresholds;
 use coin::owners::OwnerSetDistribution;
 use coin::sharing::ShareThresholds;
 use coin_schemas::household::{MAX_NAME_BYTES, Score};
@@ -8,6 +7,7 @@ use coin_schemas::tools::{RecordScores, RecordScoresResult};
 
 use super::fields;
 use super::{Effect, Tool, ToolError};
+use crate::scene::thresholds_of;
 use crate::store::{Belief, Household, Inference, Store};
 
 pub(super) struct RecordScoresTool;
@@ -45,7 +45,7 @@ impl Tool for RecordScoresTool {
                     .map_err(|source| ToolError::field("owner_sets", source.to_string()))?,
                 None => OwnerSetDistribution::from_scores(&scores),
             };
-            let thought = Thresholds::for_model(arguments.model.as_deref()).assess(
+            let thought = thresholds_of(arguments.model.as_deref()).assess(
                 &scores,
                 &distribution,
                 &ShareThresholds::default(),

@@ -7,7 +7,10 @@ use coin_schemas::tools::{MAX_CAPTIONS, RecordUsage, RecordUsageResult, Rejected
 
 use super::fields::{self, quoted};
 use super::{Effect, Tool, ToolError};
-use crate::store::{Household, ObjectKey, Reader, Store, StoreError, UsageRecord};
+use crate::store::{
+    Call, EVENTS_BETWEEN_REPORTS, Household, ObjectKey, Progress, Reader, Stage, Store, StoreError,
+    UsageRecord,
+};
 
 /// Near misses are looked for this many times in a call; comparing ids takes time.
 const EXPLAINED_IDS: usize = 20;
@@ -41,8 +44,7 @@ impl Tool for RecordUsageTool {
             Ok::<_, ToolError>((fields::household(reader)?, find_objects(reader, captions)?))
         })?;
         // Reading the captions takes longer than storing them, so it is done while nobody has to wait.
-        let mut rejected = Vec::new();
-        let records = read_captions(captions, &household, &objects, &mut rejected);
+        let (records, rejected) = read_captions(captions, &household, &objects, store.call())?;
         let counts = store.write(|writer| {
             let counts = writer.record_usage(&household, &records)?;
             // A camera whose clock is wrong must not carry the home's present into the future with it.
@@ -90,17 +92,23 @@ fn read_captions<'a>(
     captions: &'a [UsageCaption],
     household: &Household,
     objects: &Objects<'_>,
-    rejected: &mut Vec<RejectedCaption>,
-) -> Vec<UsageRecord<'a>> {
+    call: &Call,
+) -> Result<(Vec<UsageRecord<'a>>, Vec<RejectedCaption>), StoreError> {
     let reader = CaptionReader::new(household.roster());
+    let total = captions.len() as u64;
     let mut records = Vec::with_capacity(captions.len());
-    for (index, UsageCaption { object_id, caption }) in (0..).zip(captions) {
+    let mut rejected = Vec::new();
+    for (index, UsageCaption { object_id, caption }) in captions.iter().enumerate() {
+        let done = index as u64;
+        if index % EVENTS_BETWEEN_REPORTS == 0 {
+            call.advance(Progress { stage: Stage::Reading, done, total })?;
+        }
         match read_caption(&reader, objects, object_id, caption) {
             Ok(record) => records.push(record),
-            Err(reason) => rejected.push(RejectedCaption { index, reason }),
+            Err(reason) => rejected.push(RejectedCaption { index: done, reason }),
         }
     }
-    records
+    Ok((records, rejected))
 }
 
 fn read_caption<'a>(

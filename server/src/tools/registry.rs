@@ -8,22 +8,25 @@ use rmcp::model::{JsonObject, Tool as Definition, ToolAnnotations};
 use serde_json::Value;
 use thiserror::Error;
 
+use super::add_user::AddUserTool;
+use super::ask_owner::AskOwnerTool;
 use super::get_usage_summary::GetUsageSummaryTool;
 use super::list_objects::ListObjectsTool;
 use super::list_users::ListUsersTool;
 use super::nearby_objects::NearbyObjectsTool;
+use super::next_question::NextQuestionTool;
 use super::record_answer::RecordAnswerTool;
 use super::record_scores::RecordScoresTool;
 use super::record_usage::RecordUsageTool;
 use super::retract_answer::RetractAnswerTool;
 use super::similar_objects::SimilarObjectsTool;
-use super::{Effect, Tool, ToolError, arguments, schema};
+use super::whose_is::WhoseIsTool;
+use super::{Effect, Person, Tool, ToolError, Turn, arguments, schema};
 use crate::near_miss;
 use crate::store::{Access, Store};
 
-/// The tools that a client with an ownership loop of its own needs.
-const CORE: [&str; 5] =
-    ["get_usage_summary", "nearby_objects", "similar_objects", "record_answer", "record_usage"];
+/// The tools of the paper: what a client with an ownership loop of its own needs.
+const CORE: [&str; 4] = ["get_usage_summary", "nearby_objects", "similar_objects", "record_answer"];
 
 /// Which tools are offered. Read from a text: `all`, `core` or names with commas between them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -38,8 +41,8 @@ impl ToolSelection {
         Self { names: None }
     }
 
-    /// The five that a client with an ownership loop of its own needs: `get_usage_summary`, `nearby_objects`,
-    /// `similar_objects`, `record_answer` and `record_usage`.
+    /// The paper's four, which a client with an ownership loop of its own needs: `get_usage_summary`,
+    /// `nearby_objects`, `similar_objects` and `record_answer`.
     pub fn core() -> Self {
         Self { names: Some(CORE.to_vec()) }
     }
@@ -75,7 +78,7 @@ pub struct UnknownTool {
     known: String,
 }
 
-type Function = fn(&Store, &JsonObject, JsonObject) -> Result<Value, ToolError>;
+type Function = fn(&Store, &JsonObject, JsonObject, Person) -> Result<Turn<Value>, ToolError>;
 
 /// A tool that is offered.
 #[derive(Debug, Clone)]
@@ -88,7 +91,13 @@ pub(crate) struct Entry {
 impl Entry {
     fn new<T: Tool>() -> Self {
         let reads = T::EFFECT == Effect::Reads;
-        let annotations = ToolAnnotations::from_raw(None, Some(reads), Some(false), Some(true), Some(false));
+        let annotations = ToolAnnotations::from_raw(
+            None,
+            Some(reads),
+            Some(false),
+            Some(T::EFFECT != Effect::Asks),
+            Some(false),
+        );
         let mut definition = Definition::new(T::NAME, T::DESCRIPTION, schema::of_arguments::<T::Arguments>());
         definition.title = Some(T::TITLE.to_owned());
         definition.output_schema = Some(Arc::new(schema::of_output::<T::Output>()));
@@ -97,14 +106,26 @@ impl Entry {
     }
 
     /// Runs the tool.
-    pub(crate) fn call(&self, store: &Store, arguments: JsonObject) -> Result<Value, ToolError> {
-        (self.function)(store, &self.definition.input_schema, arguments)
+    pub(crate) fn call(
+        &self,
+        store: &Store,
+        arguments: JsonObject,
+        person: Person,
+    ) -> Result<Turn<Value>, ToolError> {
+        (self.function)(store, &self.definition.input_schema, arguments, person)
     }
 }
 
-fn call<T: Tool>(store: &Store, schema: &JsonObject, arguments: JsonObject) -> Result<Value, ToolError> {
-    let output = T::call(store, arguments::parse::<T>(schema, arguments)?)?;
-    serde_json::to_value(output).map_err(ToolError::Output)
+fn call<T: Tool>(
+    store: &Store,
+    schema: &JsonObject,
+    arguments: JsonObject,
+    person: Person,
+) -> Result<Turn<Value>, ToolError> {
+    match T::converse(store, arguments::parse::<T>(schema, arguments)?, person)? {
+        Turn::Done(output) => serde_json::to_value(output).map(Turn::Done).map_err(ToolError::Output),
+        Turn::Ask(form) => Ok(Turn::Ask(form)),
+    }
 }
 
 /// The offered tools by name.
@@ -117,15 +138,19 @@ impl Registry {
     fn all() -> Self {
         let mut entries = BTreeMap::new();
         let mut add = |name, entry| entries.insert(name, entry);
+        add(AddUserTool::NAME, Entry::new::<AddUserTool>());
+        add(AskOwnerTool::NAME, Entry::new::<AskOwnerTool>());
         add(GetUsageSummaryTool::NAME, Entry::new::<GetUsageSummaryTool>());
         add(ListObjectsTool::NAME, Entry::new::<ListObjectsTool>());
         add(ListUsersTool::NAME, Entry::new::<ListUsersTool>());
         add(NearbyObjectsTool::NAME, Entry::new::<NearbyObjectsTool>());
+        add(NextQuestionTool::NAME, Entry::new::<NextQuestionTool>());
         add(RecordAnswerTool::NAME, Entry::new::<RecordAnswerTool>());
         add(RecordScoresTool::NAME, Entry::new::<RecordScoresTool>());
         add(RecordUsageTool::NAME, Entry::new::<RecordUsageTool>());
         add(RetractAnswerTool::NAME, Entry::new::<RetractAnswerTool>());
         add(SimilarObjectsTool::NAME, Entry::new::<SimilarObjectsTool>());
+        add(WhoseIsTool::NAME, Entry::new::<WhoseIsTool>());
         Self { entries }
     }
 

@@ -4,6 +4,7 @@ use coin_schemas::tools::{RetractAnswer, RetractAnswerResult};
 
 use super::fields;
 use super::{Effect, Tool, ToolError};
+use crate::scene;
 use crate::store::{Belief, Retraction, Store};
 
 pub(super) struct RetractAnswerTool;
@@ -25,7 +26,7 @@ impl Tool for RetractAnswerTool {
     fn call(store: &Store, arguments: RetractAnswer) -> Result<RetractAnswerResult, ToolError> {
         store.write(|writer| {
             let object = fields::object(writer, &arguments.object_id)?;
-            let present = fields::present(writer)?;
+            let present = scene::present(writer)?;
             if writer.retract_answer(object.key, present)? == Retraction::NothingToRetract {
                 return Err(ToolError::field(
                     "object_id",

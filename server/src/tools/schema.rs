@@ -12,9 +12,33 @@ pub(super) fn of_arguments<T: JsonSchema>() -> JsonObject {
     object_schema::<T>(SchemaSettings::draft2020_12().for_deserialize())
 }
 
-/// The schema of a result: what is sent.
+/// The schema of a result: what is sent. It says of what kind every field is and no more: hosts check results with it
+/// and show it to few models, who read what a result means in the description of its tool. `schemas/schema/` has the
+/// whole of it.
 pub(super) fn of_output<T: JsonSchema>() -> JsonObject {
-    object_schema::<T>(SchemaSettings::draft2020_12().for_serialize())
+    let mut schema = Schema::from(object_schema::<T>(SchemaSettings::draft2020_12().for_serialize()));
+    strip_details(&mut schema);
+    into_object(schema)
+}
+
+fn strip_details(schema: &mut Schema) {
+    transform_subschemas(&mut |nested: &mut Schema| strip_details(nested), schema);
+    for detail in ["description", "uniqueItems", "minimum", "maximum"] {
+        schema.remove(detail);
+    }
+    strip_variants(schema);
+}
+
+/// One list of texts instead of a choice between constants, one for each text.
+fn strip_variants(schema: &mut Schema) {
+    let constants = |variants: &Vec<Value>| -> Option<Vec<Value>> {
+        variants.iter().map(|variant| variant.get("const").cloned()).collect()
+    };
+    if let Some(texts) = schema.get("oneOf").and_then(Value::as_array).and_then(constants) {
+        schema.remove("oneOf");
+        schema.insert("type".to_owned(), "string".into());
+        schema.insert("enum".to_owned(), texts.into());
+    }
 }
 
 fn object_schema<T: JsonSchema>(settings: SchemaSettings) -> JsonObject {
@@ -26,6 +50,10 @@ fn object_schema<T: JsonSchema>(settings: SchemaSettings) -> JsonObject {
     let mut schema = SchemaGenerator::new(settings).into_root_schema_for::<T>();
     strip_number_formats(&mut schema);
     strip_noise(&mut schema);
+    into_object(schema)
+}
+
+fn into_object(schema: Schema) -> JsonObject {
     match schema.to_value() {
         Value::Object(object) => object,
         // A schema may also be `true` or `false`; a structure's never is.

@@ -1,11 +1,10 @@
 //! `similar_objects`: what looks like a thing.
 
-use coin::similarity::{most_similar, normalise};
-use coin_schemas::tools::{LookAlike, MAX_K, SimilarObjects, SimilarObjectsResult, display_name};
+use coin_schemas::tools::{MAX_K, SimilarObjects, SimilarObjectsResult};
 
-use super::fields::{self, four_decimals};
-use super::known_ownership::known_ownership;
+use super::fields;
 use super::{Effect, Tool, ToolError};
+use crate::scene::{LookAlikes, Scene};
 use crate::store::Store;
 
 const NO_FEATURE: &str = "This object has no visual features, so nothing can be compared with it.";
@@ -30,43 +29,12 @@ impl Tool for SimilarObjectsTool {
         let k = fields::within("k", arguments.k, &(1..=MAX_K))? as usize;
         store.read(|reader| {
             let object = fields::object(reader, &arguments.object_id)?;
-            let household = fields::household(reader)?;
-            let without = |note: &str| SimilarObjectsResult {
-                object: fields::object_ref(&object),
-                similar_objects: Vec::new(),
-                note: Some(note.to_owned()),
+            let (similar_objects, note) = match Scene::new(reader)?.look_alikes(&object, k)? {
+                LookAlikes::Found(found) => (found, None),
+                LookAlikes::NeverSeen => (Vec::new(), Some(NO_FEATURE.to_owned())),
+                LookAlikes::NothingToCompare => (Vec::new(), Some(NO_OTHER_FEATURES.to_owned())),
             };
-            let target = reader.feature(object.key)?.and_then(|feature| normalise(&feature));
-            let Some(target) = target else { return Ok(without(NO_FEATURE)) };
-            let objects = reader.objects()?;
-            let features = reader.features()?;
-            // Objects come by id, so their place stands for the id where similarities are equal.
-            let others: Vec<(usize, Vec<f32>)> = objects
-                .iter()
-                .enumerate()
-                .filter(|(_, other)| other.key != object.key)
-                .filter_map(|(place, other)| Some((place, normalise(features.get(&other.key)?)?)))
-                .collect();
-            if others.is_empty() {
-                return Ok(without(NO_OTHER_FEATURES));
-            }
-            let alike =
-                most_similar(&target, others.iter().map(|(place, feature)| (*place, feature.as_slice())), k);
-            let similar_objects = alike
-                .into_iter()
-                .map(|similar| {
-                    let other = &objects[similar.item];
-                    let belief = reader.belief(other.key)?;
-                    Ok(LookAlike {
-                        id: other.id.clone(),
-                        name: display_name(&other.class),
-                        similarity: four_decimals(similar.similarity),
-                        known_ownership: belief
-                            .and_then(|belief| known_ownership(household.roster(), &belief)),
-                    })
-                })
-                .collect::<Result<_, ToolError>>()?;
-            Ok(SimilarObjectsResult { object: fields::object_ref(&object), similar_objects, note: None })
+            Ok(SimilarObjectsResult { object: fields::object_ref(&object), similar_objects, note })
         })
     }
 }

@@ -5,16 +5,20 @@ use rstest::rstest;
 use serde_json::{Value, json};
 
 /// The tools of this version and whether they only look.
-const TOOLS: [(&str, bool); 9] = [
+const TOOLS: [(&str, bool); 13] = [
+    ("add_user", false),
+    ("ask_owner", false),
     ("get_usage_summary", true),
     ("list_objects", true),
     ("list_users", true),
     ("nearby_objects", true),
+    ("next_question", true),
     ("record_answer", false),
     ("record_scores", false),
     ("record_usage", false),
     ("retract_answer", false),
     ("similar_objects", true),
+    ("whose_is", true),
 ];
 
 fn tools() -> Vec<Value> {
@@ -50,7 +54,7 @@ fn every_tool_says_all_four_hints() {
         let (_, only_looks) = TOOLS.iter().find(|(name, _)| tool["name"] == *name).unwrap();
         assert_eq!(hints["readOnlyHint"], *only_looks, "{}", tool["name"]);
         assert_eq!(hints["destructiveHint"], false, "{}", tool["name"]);
-        assert_eq!(hints["idempotentHint"], true, "{}", tool["name"]);
+        assert_eq!(hints["idempotentHint"], tool["name"] != "ask_owner", "{}", tool["name"]);
         assert_eq!(hints["openWorldHint"], false, "{}", tool["name"]);
     }
 }
@@ -101,7 +105,7 @@ fn no_schema_has_what_clients_stumble_over() {
 fn every_argument_is_described() {
     for tool in tools() {
         let Some(properties) = tool["inputSchema"].get("properties").and_then(Value::as_object) else {
-            assert_eq!(tool["name"], "list_users", "only list_users takes nothing");
+            assert!(["list_users", "next_question"].contains(&tool["name"].as_str().unwrap()), "{tool}");
             continue;
         };
         for (name, property) in properties {
@@ -162,6 +166,10 @@ fn results_satisfy_the_published_schemas_too() {
         ("record_scores", json!({"object_id": "marker", "scores": {"Bob": 1, "Mary": 0, "Tom": 0}})),
         ("list_objects", json!({"limit": 1})),
         ("list_users", json!({})),
+        ("whose_is", json!({"object_id": "marker"})),
+        ("next_question", json!({})),
+        ("ask_owner", json!({"object_id": "marker", "owner": "Bob's"})),
+        ("add_user", json!({"name": "Ann"})),
     ] {
         let result = server.ok(tool, arguments);
         let schema = coin_tests::published_schema(&format!("{}.result.schema.json", tool.replace('_', "-")));
@@ -181,7 +189,7 @@ fn selected(arguments: &[&str]) -> Vec<String> {
 fn fewer_tools_can_be_offered() {
     assert_eq!(
         selected(&["--tools", "core"]),
-        ["get_usage_summary", "nearby_objects", "record_answer", "record_usage", "similar_objects"]
+        ["get_usage_summary", "nearby_objects", "record_answer", "similar_objects"]
     );
     assert_eq!(selected(&["--tools", "list_users,list_objects"]), ["list_objects", "list_users"]);
 }

@@ -6,6 +6,7 @@
 
 mod answers;
 mod definitions;
+mod judging;
 mod lists;
 mod protocol;
 mod recording;

@@ -1,5 +1,6 @@
 //! `host` from the command line to the report: what the README promises, and what is refused.
 
+mod alone;
 mod experiment;
 mod gates;
 mod making;

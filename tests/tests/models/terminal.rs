@@ -68,7 +68,9 @@ fn an_answer_that_was_taken_back_leaves_nothing_behind() {
         assert_eq!(object["source"], "inferred", "{object}");
         let reported = report["objects"].as_array().unwrap();
         let reported = reported.iter().find(|reported| reported["id"] == object["id"]).unwrap();
-        assert_eq!(object["confidence"], reported["confidence"], "{object}");
+        // The server makes the probabilities that it is handed sum to 1 once more, which may move the last bit.
+        let difference = object["confidence"].as_f64().unwrap() - reported["confidence"].as_f64().unwrap();
+        assert!(difference.abs() < 1e-12, "{object} is reported with {}", reported["confidence"]);
     }
 }
 

@@ -9,7 +9,11 @@ use super::error::StoreError;
 /// Marks a SQLite file as ours (`COIN` in ASCII).
 pub(super) const APPLICATION_ID: i32 = 0x434F_494E;
 
-const STEPS: &[M<'_>] = &[M::up(include_str!("01-household.sql")), M::up(include_str!("02-retractions.sql"))];
+const STEPS: &[M<'_>] = &[
+    M::up(include_str!("01-household.sql")),
+    M::up(include_str!("02-retractions.sql")),
+    M::up(include_str!("03-conversations.sql")),
+];
 
 /// The version of a database that this program writes.
 pub(super) const VERSION: usize = STEPS.len();

@@ -1,5 +1,8 @@
 mod arguments;
+mod asking;
 mod definitions;
+mod joining;
+mod judging;
 mod reading;
 mod recording;
 mod retracting;
@@ -7,7 +10,7 @@ mod retracting;
 use rmcp::model::JsonObject;
 use serde_json::Value;
 
-use super::{Registry, ToolError, ToolSelection};
+use super::{Person, Registry, ToolError, ToolSelection, Turn};
 use crate::store::{Access, Store};
 
 fn registry() -> Registry {
@@ -16,7 +19,10 @@ fn registry() -> Registry {
 
 fn call(store: &Store, tool: &str, arguments: Value) -> Result<Value, ToolError> {
     let arguments: JsonObject = serde_json::from_value(arguments).unwrap();
-    registry().get(tool).unwrap().call(store, arguments)
+    match registry().get(tool).unwrap().call(store, arguments, Person::OutOfReach)? {
+        Turn::Done(result) => Ok(result),
+        Turn::Ask(form) => panic!("{tool} gave a form to a client that shows none: {form:?}"),
+    }
 }
 
 /// The result of a call that is in order.

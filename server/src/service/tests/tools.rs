@@ -1,83 +1,6 @@
-//! The service as a client meets it: lines of JSON over a pipe.
-
-use coin_schemas::tools::{ListUsers, ListUsersResult};
-use rmcp::ServiceExt;
-use serde_json::{Value, json};
-use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader, DuplexStream, Lines, ReadHalf, WriteHalf};
+//! Calls of tools, and the list of them.
 
 use super::*;
-use crate::store::Access;
-use crate::test_home;
-use crate::tools::{Effect, Tool as HomeTool, ToolError};
-
-/// A tool that only panics.
-struct Panics;
-
-impl HomeTool for Panics {
-    const NAME: &'static str = "panics";
-    const TITLE: &'static str = "Panics";
-    const DESCRIPTION: &'static str = "Panics";
-    const EXAMPLE: &'static str = "{}";
-    const EFFECT: Effect = Effect::Records;
-    type Arguments = ListUsers;
-    type Output = ListUsersResult;
-
-    fn call(store: &Store, _: ListUsers) -> Result<ListUsersResult, ToolError> {
-        store.write(|_| panic!("a fault in a tool"))
-    }
-}
-
-struct Client {
-    output: WriteHalf<DuplexStream>,
-    input: Lines<BufReader<ReadHalf<DuplexStream>>>,
-    next_id: u64,
-}
-
-impl Client {
-    /// Starts a service on one end of a pipe and holds the other.
-    fn start() -> Self {
-        let tools = Registry::new(&ToolSelection::all(), Access::ReadWrite).with::<Panics>();
-        let service = CoinService::new(Arc::new(test_home::store()), tools);
-        let (ours, theirs) = tokio::io::duplex(1 << 20);
-        tokio::spawn(
-            async move { service.serve(theirs).await?.waiting().await.map_err(anyhow::Error::from) },
-        );
-        let (input, output) = tokio::io::split(ours);
-        Self { output, input: BufReader::new(input).lines(), next_id: 1 }
-    }
-
-    /// Starts a service and shakes hands with it as clients up to 2025 do.
-    async fn initialized() -> Self {
-        let mut client = Self::start();
-        let answer = client
-            .request(
-                "initialize",
-                json!({"protocolVersion": "2025-11-25", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}}),
-            )
-            .await;
-        assert_eq!(answer["result"]["protocolVersion"], "2025-11-25");
-        client.send(json!({"jsonrpc": "2.0", "method": "notifications/initialized"})).await;
-        client
-    }
-
-    async fn send(&mut self, message: Value) {
-        self.output.write_all(format!("{message}\n").as_bytes()).await.unwrap();
-    }
-
-    async fn request(&mut self, method: &str, params: Value) -> Value {
-        let id = self.next_id;
-        self.next_id += 1;
-        self.send(json!({"jsonrpc": "2.0", "id": id, "method": method, "params": params})).await;
-        let line = self.input.next_line().await.unwrap().expect("the service closed the pipe");
-        let answer: Value = serde_json::from_str(&line).unwrap();
-        assert_eq!(answer["id"], id);
-        answer
-    }
-
-    async fn call(&mut self, tool: &str, arguments: Value) -> Value {
-        self.request("tools/call", json!({"name": tool, "arguments": arguments})).await
-    }
-}
 
 #[tokio::test]
 async fn a_result_is_the_same_json_as_structure_and_as_text() {
@@ -141,7 +64,7 @@ async fn the_list_of_tools_has_one_page() {
     let list = client.request("tools/list", json!({})).await["result"].take();
     let names: Vec<&str> =
         list["tools"].as_array().unwrap().iter().map(|tool| tool["name"].as_str().unwrap()).collect();
-    assert_eq!(names.len(), 10, "{names:?}");
+    assert_eq!(names.len(), 15, "{names:?}");
     assert!(names.is_sorted(), "{names:?}");
     assert_eq!(list.get("nextCursor"), None);
     let answer = client.request("tools/list", json!({"cursor": "2"})).await;

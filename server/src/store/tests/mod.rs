@@ -1,3 +1,5 @@
+mod together;
+
 use std::path::Path;
 use std::sync::Barrier;
 use std::thread;
@@ -79,7 +81,7 @@ fn a_database_of_a_newer_version_is_refused() {
     let path = folder.path().join("home.db");
     drop(Store::open(&path, Access::ReadWrite).unwrap());
     Connection::open(&path).unwrap().execute_batch("PRAGMA user_version = 99").unwrap();
-    insta::assert_snapshot!(opening_fails(&path, Access::ReadWrite), @"cannot open the database FILE: it has version 99 and this program knows versions up to 2; install a newer coin-server");
+    insta::assert_snapshot!(opening_fails(&path, Access::ReadWrite), @"cannot open the database FILE: it has version 99 and this program knows versions up to 3; install a newer coin-server");
 }
 
 #[test]
@@ -95,7 +97,7 @@ fn an_older_database_is_not_migrated_for_reading() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("home.db");
     std::fs::write(&path, "").unwrap();
-    insta::assert_snapshot!(opening_fails(&path, Access::ReadOnly), @"cannot open the database FILE: it has version 0 and must be brought to version 2; open it once without --read-only");
+    insta::assert_snapshot!(opening_fails(&path, Access::ReadOnly), @"cannot open the database FILE: it has version 0 and must be brought to version 3; open it once without --read-only");
 }
 
 #[test]
@@ -152,7 +154,7 @@ fn a_full_disk_is_named_and_keeps_what_was_there() {
     let store = Store::open_in_memory().unwrap();
     add_bob(&store);
     {
-        let connection = store.connection.lock().unwrap();
+        let connection = store.connections.writer().unwrap();
         let pages: i64 = connection.query_row("PRAGMA page_count", [], |row| row.get(0)).unwrap();
         connection.pragma_update(None, "max_page_count", pages).unwrap();
     }
@@ -173,7 +175,7 @@ fn a_locked_database_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("home.db");
     let store = Store::open(&path, Access::ReadWrite).unwrap();
-    store.connection.lock().unwrap().busy_timeout(std::time::Duration::from_millis(1)).unwrap();
+    store.connections.writer().unwrap().busy_timeout(std::time::Duration::from_millis(1)).unwrap();
     let other = Connection::open(&path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
     let error = store.write(|writer| writer.put_user(&bob(), &Background::default())).unwrap_err();

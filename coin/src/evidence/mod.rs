@@ -6,9 +6,15 @@
 //! the owners (a Dirichlet–multinomial). Three terms of the prior look elsewhere: how many owners things have, what
 //! common sense expects of the class, and the answered owners of near things and look-alikes.
 
+mod context;
+mod newcomers;
+
 use libm::{lgamma, log};
 
 use coin_schemas::household::Score;
+
+pub use context::WeighedContext;
+pub use newcomers::judge;
 
 use crate::common_sense::Expectation;
 use crate::owners::{OwnerSet, OwnerSetDistribution, candidate_sets};
@@ -111,7 +117,7 @@ pub fn likeness_counts(class: &str, other_class: &str) -> bool {
 
 impl EvidenceParameters {
     /// The probability that the thing has the relative's owners *because* of the relation.
-    fn coupling(&self, relation: Relation) -> f64 {
+    pub fn coupling(&self, relation: Relation) -> f64 {
         match relation {
             Relation::Near { weight } => self.place * weight,
             Relation::LooksAlike { similarity } => self.looks * similarity.max(0.0),

@@ -13,7 +13,7 @@ const LEAST_CONFIDENCE: f64 = 0.9;
 /// The belief, if it was answered, or inferred with a confidence of at least 0.9.
 pub(super) fn known_ownership(roster: &Roster, belief: &Belief) -> Option<KnownOwnership> {
     let scores = match belief {
-        Belief::Answered { owners } => indicator(roster, owners),
+        Belief::Answered { owners, .. } => indicator(roster, owners),
         Belief::Inferred(inference) if inference.confidence >= LEAST_CONFIDENCE => {
             complete(roster, &inference.scores)
         }

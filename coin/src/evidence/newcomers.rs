@@ -1,0 +1,82 @@
+//! People who join a home do not put in doubt whose the things are that were there before them.
+
+use std::collections::BTreeSet;
+
+use coin_schemas::household::{ClassLabel, UserName, Users};
+use coin_schemas::model::GivenContext;
+use coin_schemas::tools::KnownOwnership;
+
+use super::{EvidenceParameters, Opinion, WeighedContext};
+use crate::common_sense::expect;
+use crate::owners::{OwnerSet, OwnerSetDistribution};
+use crate::roster::{Roster, RosterError};
+
+/// What the evidence model and the common sense about classes make of a thing of this class.
+///
+/// `newcomers` are those who joined the household after the thing was first used. One who has not used it since is no
+/// candidate: the thing is judged as if this person were not there. There is one exception, a thing that then seems to
+/// be everybody's. Whether "everybody" now means the newcomer too is just what is open, so that it is judged anew
+/// among all.
+///
+/// # Errors
+/// If the context names people who are not of the household.
+pub fn judge(
+    roster: &Roster,
+    newcomers: OwnerSet,
+    class: &ClassLabel,
+    context: &GivenContext,
+    parameters: &EvidenceParameters,
+) -> Result<OwnerSetDistribution, RosterError> {
+    let sessions = WeighedContext::new(roster, class, context)?.sessions;
+    let candidates: OwnerSet =
+        roster.indices().filter(|user| !newcomers.contains(*user) || sessions[user.place()] > 0).collect();
+    let everyone = roster.everyone();
+    if candidates == everyone || candidates.is_empty() {
+        return judge_all(roster, class, context, parameters);
+    }
+    let users: Users =
+        candidates.iter().map(|user| (roster.name(user).clone(), roster.background(user).clone())).collect();
+    let among = judge_all(&Roster::new(&users)?, class, &told_to(&users, context), parameters)?;
+    // The candidates keep their order, so that the i-th of the smaller roster is the i-th candidate.
+    let places: Vec<_> = candidates.iter().collect();
+    let widened = |set: OwnerSet| set.iter().filter_map(|user| places.get(user.place()).copied()).collect();
+    let among = OwnerSetDistribution::from_log_weights(
+        among.entries().iter().map(|&(set, probability)| (widened(set), libm::log(probability))),
+    );
+    match among.best().0 {
+        best if best == candidates && candidates.len() > 1 => judge_all(roster, class, context, parameters),
+        _ => Ok(among),
+    }
+}
+
+fn judge_all(
+    roster: &Roster,
+    class: &ClassLabel,
+    context: &GivenContext,
+    parameters: &EvidenceParameters,
+) -> Result<OwnerSetDistribution, RosterError> {
+    let expectation = expect(class.as_str(), roster);
+    let opinion = Opinion::from(expectation.as_ref());
+    Ok(WeighedContext::new(roster, class, context)?.posterior(opinion, parameters))
+}
+
+/// The context without what it says of others: what they own says nothing of a thing that they cannot own.
+fn told_to(users: &Users, context: &GivenContext) -> GivenContext {
+    let strangers = |known: &KnownOwnership| known.owners.iter().any(|owner| !users.contains_key(owner));
+    let mut told = context.clone();
+    let near = told.nearby_objects.iter_mut().map(|neighbour| &mut neighbour.known_ownership);
+    let alike = told.similar_objects.iter_mut().map(|look_alike| &mut look_alike.known_ownership);
+    for known in near.chain(alike) {
+        if known.as_ref().is_some_and(strangers) {
+            *known = None;
+        }
+    }
+    if let Some(usage) = &mut told.usage {
+        let members: BTreeSet<&UserName> = users.keys().collect();
+        usage.user_summary.retain(|line| members.contains(&line.user_id));
+    }
+    told
+}
+
+#[cfg(test)]
+mod tests;

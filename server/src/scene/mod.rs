@@ -1,0 +1,114 @@
+//! One state of the home, looked at for one call: what was seen of a thing, what lies near it, what looks like it, and
+//! what all of it says of its owners.
+
+mod judgement;
+mod known_ownership;
+mod next_question;
+mod surroundings;
+mod usage;
+
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
+
+use coin::similarity::normalise;
+use jiff::Zoned;
+use jiff::civil::DateTime;
+
+use crate::store::{Belief, Household, ObjectKey, Reader, StoreError, StoredObject};
+
+pub(crate) use judgement::{Basis, Judgement, Moment, thresholds_of};
+pub(crate) use surroundings::LookAlikes;
+pub(crate) use usage::Window;
+
+/// A home, as it is in one transaction. What a call needs is read once, when it is first needed.
+pub(crate) struct Scene<'a> {
+    reader: &'a Reader<'a>,
+    household: Household,
+    objects: OnceCell<Vec<StoredObject>>,
+    looks: OnceCell<Vec<Option<Vec<f32>>>>,
+    beliefs: OnceCell<BTreeMap<ObjectKey, Belief>>,
+}
+
+impl<'a> Scene<'a> {
+    /// The home that the reader sees.
+    ///
+    /// # Errors
+    /// If nobody lives there, and failures of the database.
+    pub(crate) fn new(reader: &'a Reader<'a>) -> Result<Self, StoreError> {
+        let household = reader.household()?.ok_or(coin::roster::RosterError::NoUsers)?;
+        Ok(Self {
+            reader,
+            household,
+            objects: OnceCell::new(),
+            looks: OnceCell::new(),
+            beliefs: OnceCell::new(),
+        })
+    }
+
+    /// The people.
+    pub(crate) fn household(&self) -> &Household {
+        &self.household
+    }
+
+    /// What the home is read with.
+    pub(crate) fn reader(&self) -> &Reader<'a> {
+        self.reader
+    }
+
+    /// All things, by id.
+    pub(crate) fn objects(&self) -> Result<&[StoredObject], StoreError> {
+        Ok(filled(&self.objects, || self.reader.objects())?)
+    }
+
+    /// What all things look like, in the order of [`Self::objects`]: features of length 1, where there are any.
+    fn looks(&self) -> Result<&[Option<Vec<f32>>], StoreError> {
+        Ok(filled(&self.looks, || {
+            let features = self.reader.features()?;
+            let look =
+                |object: &StoredObject| features.get(&object.key).and_then(|feature| normalise(feature));
+            Ok(self.objects()?.iter().map(look).collect())
+        })?)
+    }
+
+    /// Reads all beliefs at once, for a call that looks at every thing.
+    fn beliefs(&self) -> Result<&BTreeMap<ObjectKey, Belief>, StoreError> {
+        filled(&self.beliefs, || self.reader.beliefs())
+    }
+
+    /// What is recorded of a thing's owners.
+    fn belief(&self, object: ObjectKey) -> Result<Option<Belief>, StoreError> {
+        match self.beliefs.get() {
+            Some(beliefs) => Ok(beliefs.get(&object).cloned()),
+            None => self.reader.belief(object),
+        }
+    }
+
+    /// The home's present: that of the recording that it was imported from, moved on by what was recorded since;
+    /// otherwise the wall clock's local time.
+    pub(crate) fn present(&self) -> Result<DateTime, StoreError> {
+        present(self.reader)
+    }
+}
+
+/// The home's present; see [`Scene::present`].
+pub(crate) fn present(reader: &Reader<'_>) -> Result<DateTime, StoreError> {
+    Ok(match reader.clock()? {
+        Some(clock) => clock,
+        None => whole_seconds(Zoned::now().datetime()),
+    })
+}
+
+fn whole_seconds(time: DateTime) -> DateTime {
+    time.with().subsec_nanosecond(0).build().unwrap_or(time)
+}
+
+/// The content of a cell, which is made when it is first needed.
+fn filled<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, StoreError>) -> Result<&T, StoreError> {
+    match cell.get() {
+        Some(content) => Ok(content),
+        None => {
+            let made = make()?;
+            Ok(cell.get_or_init(|| made))
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Calls of tools, and the forms that a person fills in between two of them.
+
+use rmcp::model::{
+    CallToolRequestParams, CallToolResponse, CallToolResult, ContentBlock, ElicitationCapability, JsonObject,
+    ProtocolVersion,
+};
+use rmcp::service::RequestContext;
+use rmcp::{ErrorData, RoleServer};
+use serde_json::Value;
+
+use super::{CallError, CoinService, forms, work};
+use crate::store::Store;
+use crate::tools::{FORM_LIFETIME, Form, Person, ToolError, Turn};
+
+/// How a client shows forms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Forms {
+    /// Not at all.
+    None,
+    /// When a result asks for it; it then makes the call again (2026-07-28).
+    BetweenCalls,
+    /// When it is asked to while the call is under way (before).
+    DuringCalls,
+}
+
+/// What a tool has come to.
+enum Outcome {
+    Done(Value),
+    /// A form, and its state sealed for the client to keep.
+    Ask(Form, String),
+}
+
+/// Why a call has come to nothing.
+enum Failure {
+    /// The request itself is wrong.
+    Request(String),
+    /// The tool refused it or failed.
+    Tool(String),
+}
+
+impl CoinService {
+    pub(super) async fn answer(
+        &self,
+        request: CallToolRequestParams,
+        context: &RequestContext<RoleServer>,
+    ) -> Result<CallToolResponse, ErrorData> {
+        let forms = forms_of(context);
+        let outcome = match self.run(&request, forms, None, context).await {
+            Ok(Outcome::Ask(form, _)) if forms == Forms::DuringCalls => {
+                let person = self.put(form, context).await;
+                self.run(&request, Forms::None, Some(person), context).await
+            }
+            outcome => outcome,
+        };
+        match outcome {
+            Ok(Outcome::Done(result)) => Ok(CallToolResult::structured(result).into()),
+            Ok(Outcome::Ask(form, sealed)) => Ok(forms::required(&form, sealed).into()),
+            Err(Failure::Tool(message)) => {
+                Ok(CallToolResult::error(vec![ContentBlock::text(message)]).into())
+            }
+            Err(Failure::Request(message)) => Err(ErrorData::invalid_params(message, None)),
+        }
+    }
+
+    /// Shows a form while the call is under way. A client that cannot show it after all is one that shows none.
+    async fn put(&self, form: Form, context: &RequestContext<RoleServer>) -> Person {
+        let asked = context.peer.create_elicitation_with_timeout(forms::request(&form), Some(FORM_LIFETIME));
+        match asked.await.ok().and_then(forms::reply) {
+            Some(reply) => Person::Replied { state: form.state, reply },
+            None => Person::OutOfReach,
+        }
+    }
+
+    /// Runs a tool. One that panics is answered like one that failed.
+    async fn run(
+        &self,
+        request: &CallToolRequestParams,
+        forms: Forms,
+        person: Option<Person>,
+        context: &RequestContext<RoleServer>,
+    ) -> Result<Outcome, Failure> {
+        let (service, request) = (self.clone(), request.clone());
+        let outcome = work::run(context, move |call| {
+            let store = service.store.during(call);
+            let person = person.map_or_else(|| service.person(&store, &request, forms), Ok)?;
+            service.turn(&store, &request, person)
+        });
+        let fault = |_| {
+            Failure::Tool(
+                "the tool stopped because of a fault in the server, and nothing was changed; the server's log \
+                 (stderr) says more"
+                    .to_owned(),
+            )
+        };
+        outcome.await.map_err(fault)?
+    }
+
+    /// How the person can be reached, or what the client brings from the person.
+    fn person(
+        &self,
+        store: &Store,
+        request: &CallToolRequestParams,
+        forms: Forms,
+    ) -> Result<Person, Failure> {
+        let arguments = request.arguments.clone().unwrap_or_default();
+        let without_reply = match forms {
+            Forms::None => Person::OutOfReach,
+            Forms::BetweenCalls | Forms::DuringCalls => Person::WithinReach,
+        };
+        let Some(sealed) = &request.request_state else { return Ok(without_reply) };
+        let state = forms::open(store, &request.name, &arguments, sealed)
+            .map_err(|source| Failure::Request(source.to_string()))?;
+        Ok(match forms::brought_back(request.input_responses.as_ref()) {
+            Some(reply) => Person::Replied { state, reply },
+            None => without_reply,
+        })
+    }
+
+    fn turn(
+        &self,
+        store: &Store,
+        request: &CallToolRequestParams,
+        person: Person,
+    ) -> Result<Outcome, Failure> {
+        let tool = self
+            .tools
+            .get(&request.name)
+            .ok_or_else(|| Failure::Request(self.tools.unknown(&request.name).to_string()))?;
+        let arguments = request.arguments.clone().unwrap_or_default();
+        match tool.call(store, arguments.clone(), person) {
+            Ok(Turn::Done(result)) => Ok(Outcome::Done(result)),
+            Ok(Turn::Ask(form)) => {
+                let sealed = forms::seal(store, &request.name, &arguments, &form.state)
+                    .map_err(|source| Failure::Tool(source.to_string()))?;
+                Ok(Outcome::Ask(form, sealed))
+            }
+            Err(spent @ ToolError::SpentForm) => Err(Failure::Request(format!("requestState: {spent}"))),
+            Err(error) => Err(Failure::Tool(error.to_string())),
+        }
+    }
+
+    /// Calls a tool on this thread, which may wait for the disk, without the protocol around it and without a person to
+    /// ask.
+    ///
+    /// # Errors
+    /// If there is no such tool, or if it refuses the call; the text says why.
+    pub fn call(&self, tool: &str, arguments: JsonObject) -> Result<Value, CallError> {
+        let tool = self.tools.get(tool).ok_or_else(|| CallError::Unknown(self.tools.unknown(tool)))?;
+        let turn = tool.call(&self.store, arguments, Person::OutOfReach);
+        match turn.map_err(|error| CallError::Refused(error.to_string()))? {
+            Turn::Done(result) => Ok(result),
+            Turn::Ask(form) => Err(CallError::Refused(form.message)),
+        }
+    }
+}
+
+/// Whether the protocol of a request is that of 2026, in which every request stands on its own.
+pub(super) fn is_modern(context: &RequestContext<RoleServer>) -> bool {
+    context.protocol_version().is_some_and(|version| version >= ProtocolVersion::V_2026_07_28)
+}
+
+fn forms_of(context: &RequestContext<RoleServer>) -> Forms {
+    let capability = context.client_capabilities().and_then(|capabilities| capabilities.elicitation);
+    // A client that names no kind of elicitation is one from before there were two.
+    let shows = |capability: &ElicitationCapability| capability.form.is_some() || capability.url.is_none();
+    match capability.is_some_and(|capability| shows(&capability)) {
+        false => Forms::None,
+        true if is_modern(context) => Forms::BetweenCalls,
+        true => Forms::DuringCalls,
+    }
+}
