@@ -91,8 +91,8 @@ fn a_crowd_of_clients_is_served_and_loses_nothing() {
                 scope.spawn(move || {
                     let mut client = match number {
                         HTTP_CLIENTS.. => Client::pipe(home, [Era::Legacy, Era::Modern][number % 2]),
-                        _ if number % 2 == 0 => Client::modern(address),
-                        _ => Client::session(address),
+                        _ if number % 4 == 0 => Client::session(address),
+                        _ => Client::modern(address),
                     };
                     Ledger::of(&mut client, number, duration)
                 })
