@@ -143,8 +143,8 @@ impl HttpResponse {
     pub fn message(&self) -> Value {
         let text = match self.header("content-type") {
             Some("text/event-stream") => {
-                let events = self.body.lines().filter_map(|line| line.strip_prefix("data: {"));
-                events.last().map(|event| format!("{{{event}")).unwrap_or_default()
+                let mut events = self.body.lines().filter_map(|line| line.strip_prefix("data: {"));
+                events.next_back().map(|event| format!("{{{event}")).unwrap_or_default()
             }
             _ => self.body.clone(),
         };

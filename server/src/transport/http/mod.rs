@@ -1,10 +1,10 @@
 //! Streamable HTTP: one MCP endpoint that many clients use at once, and that a hostile one cannot stop.
 //!
-//! A request passes, from the outside in: [`connections`] (how many, and how slowly they may send), [`load`] (how
-//! much they may send), [`callers`] (who may be behind a browser), [`load`] again (how often, and how many at
-//! once), [`token`] (who may ask at all), and only then rmcp's service, which speaks the protocol. Nothing here knows
-//! which tools are served, and what any client can cause is logged at the level `debug` at most, so that a flood of
-//! requests is no flood of messages.
+//! A request passes, from the outside in: `connections` (how many, and how slowly they may send), `load` (how much
+//! they may send), `callers` (who may be behind a browser), `load` (how often), `token` (who may ask at all), `load`
+//! (how many at once), and only then rmcp's service, which speaks the protocol. Nothing here knows which tools are
+//! served, and what any client can cause is logged at the level `debug` at most, so that a flood of requests is no
+//! flood of messages.
 
 mod callers;
 mod connections;

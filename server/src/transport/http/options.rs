@@ -44,7 +44,8 @@ pub struct Limits {
     pub write: Duration,
     /// Requests from one address in a second.
     pub requests_per_second: NonZeroU32,
-    /// Requests that are worked on at once.
+    /// Requests that are worked on at once. Those that wait for the disk count, so that a low number would have readers
+    /// wait for writers.
     pub requests_at_once: usize,
     /// How long a request waits for its turn.
     pub turn: Duration,
@@ -68,7 +69,7 @@ impl Default for Limits {
             bodies_bytes: 64 << 20,
             write: Duration::from_secs(30),
             requests_per_second: REQUESTS_PER_SECOND,
-            requests_at_once: 32,
+            requests_at_once: 256,
             turn: Duration::from_secs(10),
             sessions: SESSIONS,
             session_idle: Duration::from_secs(30 * 60),
