@@ -1,0 +1,1 @@
+"""COIN's server, tried with clients that the project did not write."""
