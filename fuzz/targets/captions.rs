@@ -61,7 +61,8 @@ fuzz_target!(|line: &str| {
     }
     let plain = line.trim_matches(' ');
     if !plain.is_empty() && plain.len() < MAX_TEXT_BYTES - 100 && !plain.chars().any(char::is_control) {
-        let (_, seen) = read(&format!("2025-01-19 19:00 {plain}")).expect("plain text after a time is a caption");
+        let (_, seen) =
+            read(&format!("2025-01-19 19:00 {plain}")).expect("plain text after a time is a caption");
         assert_eq!(seen.at.to_string(), "2025-01-19T19:00:00");
     }
 });
