@@ -16,6 +16,12 @@ pub(crate) fn of<T: DeserializeOwned>(value: Value) -> T {
     serde_json::from_value(value).expect("fixtures have the protocol's form")
 }
 
+/// Reads a result that needs no further input. Clients of 2025-11-25 are not told that.
+fn complete<T: DeserializeOwned>(mut result: Value) -> T {
+    result["resultType"] = json!("complete");
+    of(result)
+}
+
 /// A tool that takes what `schema` says.
 pub(crate) fn tool(name: &str, schema: Value) -> Tool {
     of(json!({"name": name, "description": "A fixture of the conformance suite.", "inputSchema": schema}))
@@ -40,11 +46,11 @@ pub(crate) fn answer(tool: &str) -> Option<CallToolResult> {
         "json_schema_2020_12_tool" => json!([text("The arguments fit.")]),
         "test_error_handling" => {
             let reason = "This tool intentionally returns an error for testing";
-            return Some(of(json!({"content": [text(reason)], "isError": true})));
+            return Some(complete(json!({"content": [text(reason)], "isError": true})));
         }
         _ => return None,
     };
-    Some(of(json!({"content": content})))
+    Some(complete(json!({"content": content})))
 }
 
 /// The tools of [`answer`].
@@ -124,7 +130,7 @@ pub(crate) fn prompt(name: &str, arguments: &JsonObject) -> Option<GetPromptResu
         _ => return None,
     };
     let said = |content| json!({"role": "user", "content": content});
-    Some(of(json!({"messages": contents.into_iter().map(said).collect::<Vec<_>>()})))
+    Some(complete(json!({"messages": contents.into_iter().map(said).collect::<Vec<_>>()})))
 }
 
 /// The resources, as their list names them.
