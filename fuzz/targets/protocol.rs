@@ -46,8 +46,7 @@ fn hello(era: Era) -> String {
                 "clientInfo": {"name": "fuzz", "version": "0"},
             }),
         ),
-        // rmcp ends where something else than a request comes first, so a request settles the version here.
-        Era::Modern => return request("hello", "tools/list", json!({"_meta": meta()})),
+        Era::Modern => request("hello", "server/discover", json!({"_meta": meta()})),
     };
     format!("{hello}{}\n", json!({"jsonrpc": "2.0", "method": "notifications/initialized"}))
 }

@@ -1,6 +1,7 @@
 //! How a service reaches its clients.
 
 pub mod http;
+mod opening;
 mod signals;
 pub mod stdio;
 

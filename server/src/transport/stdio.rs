@@ -9,6 +9,7 @@ use rmcp::{ServerHandler, ServiceExt};
 use tokio::io::{AsyncRead, AsyncWrite};
 
 use super::MESSAGE_BYTES;
+use super::opening::Opening;
 
 /// Serves on this program's standard input and output, as [`serve_streams`] does.
 ///
@@ -30,6 +31,7 @@ pub async fn serve_streams<S: ServerHandler>(
     output: impl AsyncWrite + Send + Unpin + 'static,
 ) -> io::Result<()> {
     let transport = AsyncRwTransport::new_server(input, output).with_max_line_length(MESSAGE_BYTES);
+    let transport = Opening::of(transport, service.supported_protocol_versions());
     match service.serve(transport).await {
         Ok(running) => running.waiting().await.map(drop).map_err(io::Error::other),
         // A client that only looks whether the program starts says nothing and leaves.

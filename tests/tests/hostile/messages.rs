@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use coin_tests::{Era, HttpRequest, HttpServer};
+use coin_tests::{Era, HttpRequest, HttpServer, ServerProcess};
 use rstest::rstest;
 use serde_json::json;
 
@@ -52,6 +52,37 @@ fn what_is_no_message_is_an_invalid_request(#[case] text: String) {
     let server = HttpServer::start(home.db());
     assert_eq!(HttpRequest::post(text).send(server.address()).status, 415);
     super::assert_serves(&server);
+}
+
+#[rstest]
+#[case::of_2026(Era::Modern, "server/discover")]
+#[case::of_2025(Era::Legacy, "ping")]
+fn what_comes_before_the_version_is_settled_changes_nothing(#[case] era: Era, #[case] probe: &str) {
+    let home = super::home();
+    let mut pipe = ServerProcess::start_silent(["--db".as_ref(), home.db().as_os_str()], era);
+    let early = [
+        json!({"jsonrpc": "2.0", "method": "notifications/cancelled", "params": {"requestId": 1}}),
+        json!({"jsonrpc": "2.0", "method": "notifications/initialized"}),
+        json!({"jsonrpc": "2.0", "id": 7, "result": {}}),
+        json!({"jsonrpc": "2.0", "id": 8, "error": {"code": -1, "message": "no"}}),
+    ];
+    for message in &early {
+        pipe.send_line(&message.to_string());
+    }
+    pipe.request(probe, json!({})).expect("a probe is answered");
+    for message in &early {
+        pipe.send_line(&message.to_string());
+    }
+    if era == Era::Legacy {
+        let hello = json!({
+            "protocolVersion": "2025-11-25",
+            "capabilities": {},
+            "clientInfo": {"name": "test", "version": "0"},
+        });
+        pipe.request("initialize", hello).expect("initialize is answered");
+        pipe.notify("notifications/initialized");
+    }
+    assert_eq!(pipe.ok("list_users", json!({}))["users"].as_array().unwrap().len(), 3);
 }
 
 #[test]
