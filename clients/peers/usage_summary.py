@@ -3,6 +3,8 @@
 import sqlite3
 from datetime import UTC, datetime
 
+from typing_extensions import TypedDict
+
 SESSION_GAP_SECONDS = 1200
 SECONDS_A_DAY = 86_400
 ACTIONS = ("use", "take", "place", "transport", "clean", "search", "give", "other")
@@ -13,6 +15,30 @@ EVENTS = """
 """
 
 
+class Thing(TypedDict):
+    id: str
+    name: str
+
+
+class User(TypedDict):
+    user_id: str
+    total_events: int
+    sessions: int
+    actions: dict[str, int]
+    last_used_days_ago: float
+    example_events: list[str]
+
+
+class UsageSummary(TypedDict):
+    """The result, from which both SDKs make the tool's output schema."""
+
+    object: Thing
+    as_of: str
+    window_days: int
+    user_summary: list[User]
+    unattributed_events: int
+
+
 class Home:
     """A home's database, open for reading as coin-server opens it. Statements stay prepared in the connection."""
 
@@ -20,7 +46,7 @@ class Home:
         self.connection = sqlite3.connect(database, isolation_level=None)
         self.connection.executescript("PRAGMA query_only = ON; PRAGMA cache_size = -4000;")
 
-    def usage_summary(self, object_id: str, window_days: int, as_of: str | None, max_examples: int) -> dict:
+    def usage_summary(self, object_id: str, window_days: int, as_of: str | None, max_examples: int) -> UsageSummary:
         query = self.connection.execute
         query("BEGIN")
         try:
@@ -46,7 +72,7 @@ def seconds(local_time: str) -> int:
     return int(datetime.fromisoformat(local_time).replace(tzinfo=UTC).timestamp())
 
 
-def summarised(events: list[tuple], now: int, max_examples: int) -> tuple[list[dict], int]:
+def summarised(events: list[tuple], now: int, max_examples: int) -> tuple[list[User], int]:
     """What each user did, most events first, and how many events are nobody's."""
     users, unattributed, before = {}, 0, (None, 0)
     for at, name, action, caption in events:

@@ -3,7 +3,7 @@
 import sys
 
 from fastmcp import FastMCP
-from usage_summary import Home
+from usage_summary import Home, UsageSummary
 
 home = Home(sys.argv[1])
 server = FastMCP("usage")
@@ -12,7 +12,7 @@ server = FastMCP("usage")
 @server.tool
 async def get_usage_summary(
     object_id: str, window_days: int = 365, as_of: str | None = None, max_examples: int = 5
-) -> dict:
+) -> UsageSummary:
     """Who used a thing, how often, how and how long ago."""
     return home.usage_summary(object_id, window_days, as_of, max_examples)
 

@@ -98,6 +98,22 @@ server.registerTool(
       as_of: z.string().optional(),
       max_examples: z.number().int().default(5),
     }),
+    outputSchema: z.object({
+      object: z.object({ id: z.string(), name: z.string() }),
+      as_of: z.string(),
+      window_days: z.number().int(),
+      user_summary: z.array(
+        z.object({
+          user_id: z.string(),
+          total_events: z.number().int(),
+          sessions: z.number().int(),
+          actions: z.record(z.string(), z.number().int()),
+          last_used_days_ago: z.number(),
+          example_events: z.array(z.string()),
+        }),
+      ),
+      unattributed_events: z.number().int(),
+    }),
   },
   async (call) => {
     const summary = usageSummary(call);

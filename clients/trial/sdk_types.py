@@ -1,11 +1,15 @@
 """What the Python SDK's client and FastMCP's have in common: both speak in the SDK's types."""
 
+import logging
 from collections.abc import Awaitable
 
 import mcp_types
 from mcp import MCPError
 
 from trial.client import Person, Refused, Reply
+
+# It warns of a session that the server ends with 202 (accepted) rather than 200, which is as good.
+logging.getLogger("mcp.client.streamable_http").setLevel(logging.ERROR)
 
 
 class SdkTypes:
