@@ -8,9 +8,10 @@ use rmcp::service::RequestContext;
 use rmcp::{ErrorData, RoleServer};
 use serde_json::Value;
 
-use super::{CallError, CoinService, forms, work};
-use crate::store::Store;
-use crate::tools::{FORM_LIFETIME, Form, Person, ToolError, Turn};
+use super::work::{self, Fault};
+use super::{CallError, CoinService, forms};
+use crate::store::{Call, Store};
+use crate::tools::{Entry, FORM_LIFETIME, Form, Person, ToolError, Turn};
 
 /// How a client shows forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,20 +80,37 @@ impl CoinService {
         person: Option<Person>,
         context: &RequestContext<RoleServer>,
     ) -> Result<Outcome, Failure> {
-        let (service, request) = (self.clone(), request.clone());
-        let outcome = work::run(context, move |call| {
-            let store = service.store.during(call);
-            let person = person.map_or_else(|| service.person(&store, &request, forms), Ok)?;
-            service.turn(&store, &request, person)
-        });
-        let fault = |_| {
+        let done = if person.is_none() && self.is_brief(request) {
+            work::run_brief(|| self.act(&self.store, request, person, forms))
+        } else {
+            let (service, request) = (self.clone(), request.clone());
+            let act = move |call: &Call| service.act(&service.store.during(call), &request, person, forms);
+            work::run(context, act).await
+        };
+        done.map_err(|Fault| {
             Failure::Tool(
                 "the tool stopped because of a fault in the server, and nothing was changed; the server's log \
                  (stderr) says more"
                     .to_owned(),
             )
-        };
-        outcome.await.map_err(fault)?
+        })?
+    }
+
+    /// Whether a call is over before it could be handed to another thread: the tool looks at one thing only, and a
+    /// connection is free for it.
+    fn is_brief(&self, request: &CallToolRequestParams) -> bool {
+        self.tools.get(&request.name).is_some_and(Entry::is_brief) && self.store.is_free_to_read()
+    }
+
+    fn act(
+        &self,
+        store: &Store,
+        request: &CallToolRequestParams,
+        person: Option<Person>,
+        forms: Forms,
+    ) -> Result<Outcome, Failure> {
+        let person = person.map_or_else(|| self.person(store, request, forms), Ok)?;
+        self.turn(store, request, person)
     }
 
     /// How the person can be reached, or what the client brings from the person.
@@ -102,12 +120,12 @@ impl CoinService {
         request: &CallToolRequestParams,
         forms: Forms,
     ) -> Result<Person, Failure> {
-        let arguments = request.arguments.clone().unwrap_or_default();
         let without_reply = match forms {
             Forms::None => Person::OutOfReach,
             Forms::BetweenCalls | Forms::DuringCalls => Person::WithinReach,
         };
         let Some(sealed) = &request.request_state else { return Ok(without_reply) };
+        let arguments = request.arguments.clone().unwrap_or_default();
         let state = forms::open(store, &request.name, &arguments, sealed)
             .map_err(|source| Failure::Request(source.to_string()))?;
         Ok(match forms::brought_back(request.input_responses.as_ref()) {
@@ -127,9 +145,10 @@ impl CoinService {
             .get(&request.name)
             .ok_or_else(|| Failure::Request(self.tools.unknown(&request.name).to_string()))?;
         let arguments = request.arguments.clone().unwrap_or_default();
-        match tool.call(store, arguments.clone(), person) {
+        match tool.call(store, arguments, person) {
             Ok(Turn::Done(result)) => Ok(Outcome::Done(result)),
             Ok(Turn::Ask(form)) => {
+                let arguments = request.arguments.clone().unwrap_or_default();
                 let sealed = forms::seal(store, &request.name, &arguments, &form.state)
                     .map_err(|source| Failure::Tool(source.to_string()))?;
                 Ok(Outcome::Ask(form, sealed))

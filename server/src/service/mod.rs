@@ -96,7 +96,7 @@ impl CoinService {
         look: impl FnOnce(&Store) -> Result<T, ErrorData> + Send + 'static,
     ) -> Result<T, ErrorData> {
         let store = self.store.clone();
-        work::run(context, move |call| look(&store.during(call))).await.map_err(|_| {
+        work::run(context, move |call| look(&store.during(call))).await.map_err(|work::Fault| {
             ErrorData::internal_error("the server has a fault; its log (stderr) says more", None)
         })?
     }

@@ -105,7 +105,7 @@ impl Reader<'_> {
         object: ObjectKey,
     ) -> Result<Vec<RecordedAnswer>, StoreError> {
         let mut statement = self
-            .transaction
+            .connection
             .prepare_cached(&format!("{SELECT_ANSWER} WHERE object_key = ?1 ORDER BY sequence"))?;
         let mut rows = statement.query([object.0])?;
         let mut answers = Vec::new();
@@ -124,7 +124,7 @@ impl Reader<'_> {
         household: &Household,
         object: ObjectKey,
     ) -> Result<Option<RecordedAnswer>, StoreError> {
-        let mut statement = self.transaction.prepare_cached(&format!(
+        let mut statement = self.connection.prepare_cached(&format!(
             "{SELECT_ANSWER} JOIN present_answers USING (object_key, sequence) WHERE object_key = ?1"
         ))?;
         let mut rows = statement.query([object.0])?;
@@ -136,7 +136,7 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn open_questions(&self) -> Result<BTreeMap<ObjectKey, OpenQuestions>, StoreError> {
-        let mut statement = self.transaction.prepare_cached(
+        let mut statement = self.connection.prepare_cached(
             "SELECT object_key, count(*), 0 FROM answers
              WHERE status = 'unresolved' AND retracted_at IS NULL GROUP BY object_key
              UNION ALL
@@ -170,10 +170,10 @@ impl Writer<'_> {
             .map(|name| household.roster().index_of(name.as_str()).map(|user| household.key(user).0))
             .transpose()?;
         let sequence: i64 = self
-            .transaction
+            .connection
             .prepare_cached("SELECT coalesce(max(sequence), 0) + 1 FROM answers WHERE object_key = ?1")?
             .query_row([object.0], |row| row.get(0))?;
-        self.transaction
+        self.connection
             .prepare_cached(
                 "INSERT INTO answers
                      (object_key, sequence, question, answer, ownership, outside, answered_by, at, status,
@@ -197,7 +197,7 @@ impl Writer<'_> {
                 answer.reopened_at.map(civil_seconds),
             ))?;
         if answer.status == AnswerStatus::Answered {
-            self.transaction
+            self.connection
                 .prepare_cached(
                     "INSERT INTO present_answers (object_key, sequence) VALUES (?1, ?2)
                      ON CONFLICT (object_key) DO UPDATE SET sequence = excluded.sequence",
@@ -214,7 +214,7 @@ impl Writer<'_> {
     /// Failures of the database.
     pub fn retract_answer(&self, object: ObjectKey, at: DateTime) -> Result<Retraction, StoreError> {
         let retracted = self
-            .transaction
+            .connection
             .prepare_cached(
                 "UPDATE answers SET retracted_at = ?2 WHERE (object_key, sequence) IN
                      (SELECT object_key, sequence FROM present_answers WHERE object_key = ?1)",
@@ -223,7 +223,7 @@ impl Writer<'_> {
         if retracted == 0 {
             return Ok(Retraction::NothingToRetract);
         }
-        self.transaction
+        self.connection
             .prepare_cached("DELETE FROM present_answers WHERE object_key = ?1")?
             .execute([object.0])?;
         Ok(Retraction::Retracted)
@@ -244,7 +244,7 @@ impl Writer<'_> {
             Refusal::Declined => "declined",
             Refusal::Cancelled => "cancelled",
         };
-        self.transaction
+        self.connection
             .prepare_cached(
                 "INSERT INTO refusals (object_key, sequence, question, outcome, at)
                  VALUES (?1, (SELECT coalesce(max(sequence), 0) + 1 FROM refusals WHERE object_key = ?1), ?2, ?3, ?4)",

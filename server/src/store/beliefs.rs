@@ -118,8 +118,7 @@ impl Reader<'_> {
         let readers: [(&str, ReadBelief); 2] =
             [(SELECT_PRESENT_ANSWER, answer_from_row), (SELECT_INFERENCE, inference_from_row)];
         for (select, from_row) in readers {
-            let mut statement =
-                self.transaction.prepare_cached(&format!("{select} WHERE object_key = ?1"))?;
+            let mut statement = self.connection.prepare_cached(&format!("{select} WHERE object_key = ?1"))?;
             let mut rows = statement.query([object.0])?;
             if let Some(row) = rows.next()? {
                 return Ok(Some(from_row(row)?.1));
@@ -138,7 +137,7 @@ impl Reader<'_> {
         let readers: [(&str, ReadBelief); 2] =
             [(SELECT_INFERENCE, inference_from_row), (SELECT_PRESENT_ANSWER, answer_from_row)];
         for (select, from_row) in readers {
-            let mut statement = self.transaction.prepare_cached(select)?;
+            let mut statement = self.connection.prepare_cached(select)?;
             let mut rows = statement.query([])?;
             while let Some(row) = rows.next()? {
                 let (object, belief) = from_row(row)?;
@@ -154,7 +153,7 @@ impl Reader<'_> {
     /// Failures of the database.
     pub fn inference(&self, object: ObjectKey) -> Result<Option<Inference>, StoreError> {
         let mut statement =
-            self.transaction.prepare_cached(&format!("{SELECT_INFERENCE} WHERE object_key = ?1"))?;
+            self.connection.prepare_cached(&format!("{SELECT_INFERENCE} WHERE object_key = ?1"))?;
         let mut rows = statement.query([object.0])?;
         match rows.next()?.map(inference_from_row).transpose()? {
             Some((_, Belief::Inferred(inference))) => Ok(Some(inference)),
@@ -170,7 +169,7 @@ impl Writer<'_> {
     /// Failures of the database.
     pub fn put_inference(&self, object: ObjectKey, inference: &Inference) -> Result<(), StoreError> {
         let owner_sets = inference.owner_sets.as_ref().map(serde_json::to_string).transpose()?;
-        self.transaction
+        self.connection
             .prepare_cached(
                 "INSERT INTO inferences (object_key, model, scores, owner_sets, owners, confidence, settled)
                  VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)

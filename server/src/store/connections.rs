@@ -65,6 +65,14 @@ impl Connections {
         }
     }
 
+    /// Whether somebody who reads now would not have to wait.
+    pub(super) fn has_free_reader(&self) -> bool {
+        match self {
+            Self::One(connection) => connection.try_lock().is_ok(),
+            Self::Several { readers, .. } => !locked(&readers.idle).is_empty(),
+        }
+    }
+
     /// The connection for writing, as soon as nobody of this process writes.
     pub(super) fn writer(&self) -> Result<MutexGuard<'_, Connection>, StoreError> {
         match self {

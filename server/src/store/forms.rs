@@ -29,7 +29,7 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn form_key(&self) -> Result<Option<[u8; FORM_KEY_BYTES]>, StoreError> {
-        let mut statement = self.transaction.prepare_cached("SELECT form_key FROM home")?;
+        let mut statement = self.connection.prepare_cached("SELECT form_key FROM home")?;
         Ok(statement.query_row([], |row| row.get(0)).optional()?.flatten())
     }
 }
@@ -40,7 +40,7 @@ impl Writer<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn propose_form_key(&self, key: &[u8; FORM_KEY_BYTES]) -> Result<[u8; FORM_KEY_BYTES], StoreError> {
-        self.transaction
+        self.connection
             .prepare_cached("UPDATE home SET form_key = coalesce(form_key, ?1)")?
             .execute([&key[..]])?;
         self.form_key()?.ok_or_else(|| StoreError::damaged("the table home is empty"))
@@ -51,9 +51,9 @@ impl Writer<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn spend_form(&self, serial: FormSerial, expires_at: i64, now: i64) -> Result<Spending, StoreError> {
-        self.transaction.prepare_cached("DELETE FROM spent_forms WHERE expires_at < ?1")?.execute([now])?;
+        self.connection.prepare_cached("DELETE FROM spent_forms WHERE expires_at < ?1")?.execute([now])?;
         let inserted = self
-            .transaction
+            .connection
             .prepare_cached(
                 "INSERT INTO spent_forms (serial, expires_at) VALUES (?1, ?2) ON CONFLICT DO NOTHING",
             )?

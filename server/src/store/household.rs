@@ -54,7 +54,7 @@ impl Reader<'_> {
     /// Failures of the database.
     pub fn household(&self) -> Result<Option<Household>, StoreError> {
         let mut statement = self
-            .transaction
+            .connection
             .prepare_cached("SELECT user_key, name, role, occupation, joined_at FROM users")?;
         let mut rows = statement.query([])?;
         let mut people: Vec<(UserName, UserKey, Option<i64>)> = Vec::new();
@@ -78,7 +78,7 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn recording(&self) -> Result<Option<String>, StoreError> {
-        let mut statement = self.transaction.prepare_cached("SELECT recording FROM home")?;
+        let mut statement = self.connection.prepare_cached("SELECT recording FROM home")?;
         Ok(statement.query_row([], |row| row.get(0)).optional()?.flatten())
     }
 
@@ -88,7 +88,7 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn clock(&self) -> Result<Option<DateTime>, StoreError> {
-        let mut statement = self.transaction.prepare_cached("SELECT clock FROM home")?;
+        let mut statement = self.connection.prepare_cached("SELECT clock FROM home")?;
         let seconds: Option<i64> = statement.query_row([], |row| row.get(0)).optional()?.flatten();
         seconds.map(datetime).transpose()
     }
@@ -100,7 +100,7 @@ impl Writer<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn put_user(&self, name: &UserName, background: &Background) -> Result<(), StoreError> {
-        self.transaction
+        self.connection
             .prepare_cached(
                 "INSERT INTO users (name, role, occupation) VALUES (?1, ?2, ?3)
                  ON CONFLICT (name) DO UPDATE SET role = excluded.role, occupation = excluded.occupation",
@@ -114,7 +114,7 @@ impl Writer<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn put_recording(&self, name: &str, now: DateTime) -> Result<(), StoreError> {
-        self.transaction
+        self.connection
             .prepare_cached("UPDATE home SET recording = ?1, clock = max(coalesce(clock, ?2), ?2)")?
             .execute((name, civil_seconds(now)))?;
         Ok(())
@@ -125,7 +125,7 @@ impl Writer<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn advance_clock(&self, event: DateTime) -> Result<(), StoreError> {
-        self.transaction
+        self.connection
             .prepare_cached("UPDATE home SET clock = ?1 WHERE clock < ?1")?
             .execute([civil_seconds(event)])?;
         Ok(())

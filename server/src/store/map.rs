@@ -46,7 +46,7 @@ impl Reader<'_> {
     /// Failures of the database.
     pub fn object(&self, id: &str) -> Result<Option<StoredObject>, StoreError> {
         let mut statement = self
-            .transaction
+            .connection
             .prepare_cached("SELECT object_key, id, class, x, y, z, room FROM objects WHERE id = ?1")?;
         let mut rows = statement.query([id])?;
         rows.next()?.map(StoredObject::from_row).transpose()
@@ -57,8 +57,7 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn object_key(&self, id: &str) -> Result<Option<ObjectKey>, StoreError> {
-        let mut statement =
-            self.transaction.prepare_cached("SELECT object_key FROM objects WHERE id = ?1")?;
+        let mut statement = self.connection.prepare_cached("SELECT object_key FROM objects WHERE id = ?1")?;
         Ok(statement.query_row([id], |row| row.get(0)).optional()?.map(ObjectKey))
     }
 
@@ -68,7 +67,7 @@ impl Reader<'_> {
     /// Failures of the database.
     pub fn objects(&self) -> Result<Vec<StoredObject>, StoreError> {
         let mut statement = self
-            .transaction
+            .connection
             .prepare_cached("SELECT object_key, id, class, x, y, z, room FROM objects ORDER BY id")?;
         let mut rows = statement.query([])?;
         let mut objects = Vec::new();
@@ -84,7 +83,7 @@ impl Reader<'_> {
     /// Failures of the database.
     pub fn feature(&self, object: ObjectKey) -> Result<Option<Vec<f32>>, StoreError> {
         let mut statement =
-            self.transaction.prepare_cached("SELECT vector FROM features WHERE object_key = ?1")?;
+            self.connection.prepare_cached("SELECT vector FROM features WHERE object_key = ?1")?;
         let blob: Option<Vec<u8>> = statement.query_row([object.0], |row| row.get(0)).optional()?;
         Ok(blob.as_deref().map(from_bytes))
     }
@@ -94,7 +93,7 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn features(&self) -> Result<BTreeMap<ObjectKey, Vec<f32>>, StoreError> {
-        let mut statement = self.transaction.prepare_cached("SELECT object_key, vector FROM features")?;
+        let mut statement = self.connection.prepare_cached("SELECT object_key, vector FROM features")?;
         let mut rows = statement.query([])?;
         let mut features = BTreeMap::new();
         while let Some(row) = rows.next()? {
@@ -112,10 +111,10 @@ impl Writer<'_> {
     /// Failures of the database, an id that is taken among them.
     pub fn add_object(&self, object: &EpisodeObject) -> Result<ObjectKey, StoreError> {
         let [x, y, z] = object.position.metres();
-        self.transaction
+        self.connection
             .prepare_cached("INSERT INTO objects (id, class, x, y, z, room) VALUES (?1, ?2, ?3, ?4, ?5, ?6)")?
             .execute((object.id.as_str(), object.class.as_str(), x, y, z, &object.room))?;
-        Ok(ObjectKey(self.transaction.last_insert_rowid()))
+        Ok(ObjectKey(self.connection.last_insert_rowid()))
     }
 
     /// Stores what a thing looks like.
@@ -128,7 +127,7 @@ impl Writer<'_> {
         feature: &[f32; FEATURE_DIMENSIONS],
     ) -> Result<(), StoreError> {
         let bytes: Vec<u8> = feature.iter().flat_map(|component| component.to_le_bytes()).collect();
-        self.transaction
+        self.connection
             .prepare_cached(
                 "INSERT INTO features (object_key, vector) VALUES (?1, ?2)
                  ON CONFLICT (object_key) DO UPDATE SET vector = excluded.vector",

@@ -29,7 +29,7 @@ use std::ops::Deref;
 use std::path::Path;
 use std::sync::Arc;
 
-use rusqlite::{Transaction, TransactionBehavior};
+use rusqlite::{Connection, TransactionBehavior};
 
 pub use answers::{OpenQuestions, RecordedAnswer, Refusal, Retraction};
 pub use beliefs::{Belief, Inference};
@@ -99,6 +99,11 @@ impl Store {
         &self.call
     }
 
+    /// Whether somebody who looks at the home now would not have to wait for others who do.
+    pub(crate) fn is_free_to_read(&self) -> bool {
+        self.connections.has_free_reader()
+    }
+
     /// Looks at one state of the home.
     ///
     /// # Errors
@@ -110,9 +115,8 @@ impl Store {
         let mut lent = self.connections.reader();
         let connection = lent.connection().ok_or(StoreError::Interrupted)?;
         let _visit = self.call.enter(connection)?;
-        let transaction =
-            connection.transaction_with_behavior(TransactionBehavior::Deferred).map_err(StoreError::from)?;
-        work(&Reader { transaction })
+        let moment = Moment::begin(connection)?;
+        work(&Reader { connection: moment.connection })
     }
 
     /// Changes the home, all or nothing: where `work` fails, nothing of it is kept.
@@ -127,10 +131,9 @@ impl Store {
         let _visit = self.call.enter(&connection)?;
         let transaction =
             connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(StoreError::from)?;
-        let writer = Writer { reader: Reader { transaction }, call: &self.call };
-        let value = work(&writer)?;
+        let value = work(&Writer { reader: Reader { connection: &transaction }, call: &self.call })?;
         self.call.go_on()?;
-        writer.reader.transaction.commit().map_err(StoreError::from)?;
+        transaction.commit().map_err(StoreError::from)?;
         Ok(value)
     }
 }
@@ -138,7 +141,33 @@ impl Store {
 /// One state of the home, for looking at.
 #[derive(Debug)]
 pub struct Reader<'connection> {
-    transaction: Transaction<'connection>,
+    connection: &'connection Connection,
+}
+
+/// One state of the home, for as long as this is held. Its two statements stay prepared, which those of rusqlite's own
+/// transactions do not.
+struct Moment<'connection> {
+    connection: &'connection Connection,
+}
+
+impl<'connection> Moment<'connection> {
+    fn begin(connection: &'connection Connection) -> Result<Self, StoreError> {
+        connection.prepare_cached("BEGIN DEFERRED")?.execute([])?;
+        Ok(Self { connection })
+    }
+}
+
+impl Drop for Moment<'_> {
+    fn drop(&mut self) {
+        // What the disk failed at was rolled back already.
+        if self.connection.is_autocommit() {
+            return;
+        }
+        let ended = self.connection.prepare_cached("ROLLBACK").and_then(|mut end| end.execute([]));
+        if let Err(source) = ended {
+            tracing::warn!("a look at the database could not be ended: {source}");
+        }
+    }
 }
 
 /// One change of the home. It can be read like a [`Reader`], and shows what it has written itself.

@@ -23,7 +23,7 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn is_lived_in(&self) -> Result<bool, StoreError> {
-        let mut statement = self.transaction.prepare_cached(
+        let mut statement = self.connection.prepare_cached(
             "SELECT EXISTS (SELECT 1 FROM usage_events) OR EXISTS (SELECT 1 FROM answers)
                  OR EXISTS (SELECT 1 FROM inferences)",
         )?;
@@ -36,7 +36,7 @@ impl Reader<'_> {
     /// Failures of the database.
     pub fn first_used(&self, object: ObjectKey) -> Result<Option<i64>, StoreError> {
         let mut statement =
-            self.transaction.prepare_cached("SELECT min(at) FROM usage_events WHERE object_key = ?1")?;
+            self.connection.prepare_cached("SELECT min(at) FROM usage_events WHERE object_key = ?1")?;
         Ok(statement.query_row([object.0], |row| row.get(0))?)
     }
 }
@@ -47,7 +47,7 @@ impl Writer<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn put_joined_at(&self, name: &UserName, at: DateTime) -> Result<(), StoreError> {
-        self.transaction
+        self.connection
             .prepare_cached("UPDATE users SET joined_at = ?2 WHERE name = ?1")?
             .execute((name.as_str(), civil_seconds(at)))?;
         Ok(())
@@ -60,7 +60,7 @@ impl Writer<'_> {
     /// Failures of the database.
     pub fn attribute_to(&self, household: &Household, newcomer: UserIndex) -> Result<u64, StoreError> {
         let reader = CaptionReader::new(household.roster());
-        let mut update = self.transaction.prepare_cached(
+        let mut update = self.connection.prepare_cached(
             "UPDATE usage_events SET actor = ?4, action = ?5 WHERE object_key = ?1 AND at = ?2 AND caption = ?3",
         )?;
         let mut attributed = 0;
@@ -78,7 +78,7 @@ impl Writer<'_> {
 
     fn unattributed(&self) -> Result<Vec<Unattributed>, StoreError> {
         let mut statement = self
-            .transaction
+            .connection
             .prepare_cached("SELECT object_key, at, caption FROM usage_events WHERE actor IS NULL")?;
         let mut rows = statement.query([])?;
         let mut events = Vec::new();
@@ -101,18 +101,18 @@ impl Writer<'_> {
         let everybody = before.roster().owners(before.roster().everyone());
         let mut reopened = Vec::new();
         for object in self.shared_answers(&everybody)? {
-            self.transaction
+            self.connection
                 .prepare_cached(
                     "UPDATE answers SET reopened_at = ?2 WHERE (object_key, sequence) IN
                          (SELECT object_key, sequence FROM present_answers WHERE object_key = ?1)",
                 )?
                 .execute((object.0, civil_seconds(at)))?;
-            self.transaction
+            self.connection
                 .prepare_cached("DELETE FROM present_answers WHERE object_key = ?1")?
                 .execute([object.0])?;
             reopened.push(object);
         }
-        let mut statement = self.transaction.prepare_cached(
+        let mut statement = self.connection.prepare_cached(
             "UPDATE inferences SET settled = 0 WHERE settled = 1 AND owners = ?1 RETURNING object_key",
         )?;
         let mut rows = statement.query([serde_json::to_string(&everybody)?])?;
@@ -125,7 +125,7 @@ impl Writer<'_> {
     }
 
     fn shared_answers(&self, everybody: &Owners) -> Result<Vec<ObjectKey>, StoreError> {
-        let mut statement = self.transaction.prepare_cached(
+        let mut statement = self.connection.prepare_cached(
             "SELECT object_key, ownership FROM present_answers JOIN answers USING (object_key, sequence)
              WHERE outside = 0",
         )?;

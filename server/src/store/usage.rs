@@ -64,7 +64,7 @@ impl Reader<'_> {
         first_seconds: i64,
         last_seconds: i64,
     ) -> Result<UsageLog, StoreError> {
-        let mut statement = self.transaction.prepare_cached(
+        let mut statement = self.connection.prepare_cached(
             "SELECT at, actor, action, caption FROM usage_events
              WHERE object_key = ?1 AND at BETWEEN ?2 AND ?3 ORDER BY at, caption",
         )?;
@@ -94,7 +94,7 @@ impl Reader<'_> {
     /// Failures of the database.
     pub fn event_count(&self) -> Result<u64, StoreError> {
         let count: i64 =
-            self.transaction.query_row("SELECT count(*) FROM usage_events", [], |row| row.get(0))?;
+            self.connection.query_row("SELECT count(*) FROM usage_events", [], |row| row.get(0))?;
         Ok(count.unsigned_abs())
     }
 }
@@ -115,7 +115,7 @@ impl Writer<'_> {
             .map(|record| (record.object.0, civil_seconds(record.observation.at), record))
             .collect();
         order.sort_unstable_by_key(|&(object, at, record)| (object, at, record.caption));
-        let mut statement = self.transaction.prepare_cached(
+        let mut statement = self.connection.prepare_cached(
             "INSERT INTO usage_events (object_key, at, caption, actor, action) VALUES (?1, ?2, ?3, ?4, ?5)
              ON CONFLICT DO NOTHING",
         )?;

@@ -3,7 +3,7 @@
 use coin_schemas::tools::{GetUsageSummary, MAX_EXAMPLES, MAX_WINDOW_DAYS, UsageSummary};
 
 use super::fields;
-use super::{Effect, Tool, ToolError};
+use super::{Effect, Effort, Tool, ToolError};
 use crate::scene::{Scene, Window};
 use crate::store::Store;
 
@@ -19,6 +19,7 @@ impl Tool for GetUsageSummaryTool {
         share it. as_of defaults to the home's present.";
     const EXAMPLE: &'static str = r#"{"object_id": "3"}"#;
     const EFFECT: Effect = Effect::Reads;
+    const EFFORT: Effort = Effort::Brief;
 
     type Arguments = GetUsageSummary;
     type Output = UsageSummary;

@@ -4,7 +4,7 @@ use coin::roster::Roster;
 use coin_schemas::household::Background;
 use coin_schemas::tools::{ListUsers, ListUsersResult, ListedUser};
 
-use super::{Effect, Tool, ToolError};
+use super::{Effect, Effort, Tool, ToolError};
 use crate::store::Store;
 
 pub(super) struct ListUsersTool;
@@ -16,6 +16,7 @@ impl Tool for ListUsersTool {
         candidates for an owner. Other tools take their names exactly as they stand here.";
     const EXAMPLE: &'static str = "{}";
     const EFFECT: Effect = Effect::Reads;
+    const EFFORT: Effort = Effort::Brief;
 
     type Arguments = ListUsers;
     type Output = ListUsersResult;

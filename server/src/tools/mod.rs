@@ -35,7 +35,7 @@ use crate::store::Store;
 pub(crate) use ask_owner::FORM_LIFETIME;
 pub(crate) use conversation::{Form, FormState, Person, Reply, Turn};
 pub(crate) use error::ToolError;
-pub(crate) use registry::Registry;
+pub(crate) use registry::{Entry, Registry};
 pub use registry::{ToolSelection, UnknownTool};
 
 /// What a tool does to the home. None destroys anything, and none reaches outside the home.
@@ -47,6 +47,15 @@ pub(crate) enum Effect {
     Records,
     /// It asks a person and records the answer. The same call again asks again.
     Asks,
+}
+
+/// How long a tool keeps a thread busy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// Well under a millisecond: it looks at one thing.
+    Brief,
+    /// Longer: it looks at many things, or waits until what it writes is on the disk.
+    Long,
 }
 
 /// A tool: its words and what it does.
@@ -61,6 +70,8 @@ pub(crate) trait Tool {
     const EXAMPLE: &'static str;
     /// What it does to the home.
     const EFFECT: Effect;
+    /// How long it takes.
+    const EFFORT: Effort = Effort::Long;
 
     /// What it takes.
     type Arguments: DeserializeOwned + JsonSchema;

@@ -21,7 +21,7 @@ use super::record_usage::RecordUsageTool;
 use super::retract_answer::RetractAnswerTool;
 use super::similar_objects::SimilarObjectsTool;
 use super::whose_is::WhoseIsTool;
-use super::{Effect, Person, Tool, ToolError, Turn, arguments, schema};
+use super::{Effect, Effort, Person, Tool, ToolError, Turn, arguments, schema};
 use crate::near_miss;
 use crate::store::{Access, Store};
 
@@ -85,6 +85,7 @@ type Function = fn(&Store, &JsonObject, JsonObject, Person) -> Result<Turn<Value
 pub(crate) struct Entry {
     definition: Definition,
     effect: Effect,
+    effort: Effort,
     function: Function,
 }
 
@@ -102,7 +103,12 @@ impl Entry {
         definition.title = Some(T::TITLE.to_owned());
         definition.output_schema = Some(Arc::new(schema::of_output::<T::Output>()));
         definition.annotations = Some(annotations);
-        Self { definition, effect: T::EFFECT, function: call::<T> }
+        Self { definition, effect: T::EFFECT, effort: T::EFFORT, function: call::<T> }
+    }
+
+    /// Whether the tool keeps a thread busy for less than it takes to hand it to another one.
+    pub(crate) fn is_brief(&self) -> bool {
+        self.effort == Effort::Brief
     }
 
     /// Runs the tool.

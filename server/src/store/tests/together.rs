@@ -157,7 +157,7 @@ fn a_statement_that_runs_is_broken_off() {
         // It counts to a number that takes minutes.
         let endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 100000000000)
                        SELECT max(i) FROM n";
-        Ok(reader.transaction.query_row(endless, [], |row| row.get(0))?)
+        Ok(reader.connection.query_row(endless, [], |row| row.get(0))?)
     });
     assert!(matches!(outcome, Err(StoreError::Interrupted)), "{outcome:?}");
     assert!(started.elapsed() < Duration::from_secs(20));
