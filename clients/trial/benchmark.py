@@ -95,29 +95,42 @@ def row(peer: dict, ours: dict) -> list[str]:
 HEAD = ["server", "median µs", "of ours", "of rounds", "p99 µs", "CPU µs", "start ms", "peak MiB"]
 
 
+def shortfalls(ours: dict, peers: list[dict]) -> list[str]:
+    """What is required and not reached."""
+    ratios = {peer["name"]: typical(peer) / typical(ours) for peer in peers}
+    return [
+        f"{name} takes {ratios[name]:.1f} times as long as {OURS}; {required:.0f} times is required"
+        for name, required in REQUIRED.items()
+        if ratios[name] < required
+    ]
+
+
 def main() -> int:
     arguments = argparse.ArgumentParser(prog="clients/run benchmark", description=__doc__)
-    arguments.add_argument("--check", action="store_true", help="measure little, on one processor; fail below what is required")
+    arguments.add_argument(
+        "--check",
+        action="store_true",
+        help="measure on one processor, little at first and thoroughly where that falls short; fail below what is required",
+    )
     arguments.add_argument("--markdown", action="store_true", help="print the tables as docs/latency.md has them")
     given = arguments.parse_args()
     table = markdown if given.markdown else aligned
-    shortfalls = []
+
+    def measure(plan: Plan, pinned: bool) -> list[str]:
+        ours, *peers = figures = measured(plan, database, pinned)
+        print("\nclient and server on one processor\n" if pinned else "\nclient and server on any processor\n")
+        print(table(HEAD, [row(peer, ours) for peer in figures]))
+        return shortfalls(ours, peers) if pinned else []
+
     with tempfile.TemporaryDirectory() as folder:
         database = homes.small_house(Path(folder))
-        for pinned in [True] if given.check else [True, False]:
-            ours, *peers = figures = measured(QUICK if given.check else THOROUGH, database, pinned)
-            print("\nclient and server on one processor\n" if pinned else "\nclient and server on any processor\n")
-            print(table(HEAD, [row(peer, ours) for peer in figures]))
-            if pinned:
-                ratios = {peer["name"]: typical(peer) / typical(ours) for peer in peers}
-                shortfalls = [
-                    f"{name} takes {ratios[name]:.1f} times as long as {OURS}; {required:.0f} times is required"
-                    for name, required in REQUIRED.items()
-                    if ratios[name] < required
-                ]
-    for shortfall in shortfalls:
+        if given.check:
+            missed = measure(QUICK, pinned=True) and measure(THOROUGH, pinned=True)
+        else:
+            missed = measure(THOROUGH, pinned=True) + measure(THOROUGH, pinned=False)
+    for shortfall in missed:
         print(f"\n{shortfall}")
-    return 1 if given.check and shortfalls else 0
+    return 1 if given.check and missed else 0
 
 
 if __name__ == "__main__":

@@ -243,13 +243,13 @@ impl ServerHandler for CoinService {
     async fn on_custom_request(
         &self,
         request: CustomRequest,
-        _: RequestContext<RoleServer>,
+        context: RequestContext<RoleServer>,
     ) -> Result<CustomResult, ErrorData> {
         Err(match request.method.as_str() {
             "tools/call" => {
                 ErrorData::invalid_params("tools/call takes {\"name\": TEXT, \"arguments\": OBJECT}", None)
             }
-            "initialize" => ErrorData::invalid_params(
+            "initialize" if !calls::is_modern(&context) => ErrorData::invalid_params(
                 "initialize takes {\"protocolVersion\": TEXT, \"capabilities\": OBJECT, \"clientInfo\": OBJECT}",
                 None,
             ),
