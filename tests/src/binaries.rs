@@ -127,6 +127,8 @@ impl Program {
         let started = Instant::now();
         let mut child = Command::new(&self.path)
             .args(&self.arguments)
+            .env_remove("COIN_TOKEN")
+            .env_remove("RUST_LOG")
             .envs(&self.environment)
             .current_dir(&self.folder)
             .stdin(Stdio::piped())

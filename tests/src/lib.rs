@@ -9,6 +9,7 @@ mod binaries;
 mod episode;
 mod home;
 mod http;
+#[cfg(target_os = "linux")]
 mod memory;
 pub mod provider;
 mod repository;
@@ -20,6 +21,7 @@ pub use binaries::{Finished, Program, binary};
 pub use episode::{EpisodeBuilder, EpisodeFolder, feature};
 pub use home::Home;
 pub use http::{HttpConnection, HttpRequest, HttpResponse, HttpServer};
+#[cfg(target_os = "linux")]
 pub use memory::resident_memory;
 pub use repository::{fixture, is_slow_run, repository, small_house};
 pub use schema::{assert_conforms, published_schema};

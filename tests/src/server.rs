@@ -68,6 +68,8 @@ impl ServerProcess {
     pub fn start_silent(arguments: impl IntoIterator<Item = impl AsRef<OsStr>>, era: Era) -> Self {
         let mut child = Command::new(binary("coin-server"))
             .args(arguments)
+            .env_remove("COIN_TOKEN")
+            .env_remove("RUST_LOG")
             .current_dir(repository())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

@@ -37,6 +37,8 @@ impl HttpServer {
             .arg("--db")
             .arg(db)
             .args(arguments)
+            .env_remove("COIN_TOKEN")
+            .env_remove("RUST_LOG")
             .envs(environment.iter().copied())
             .current_dir(repository())
             .stdin(Stdio::null())
@@ -47,11 +49,17 @@ impl HttpServer {
         let (stderr, _) = Collected::of(child.stderr.take().expect("standard error is a pipe"));
         let deadline = Instant::now() + PATIENCE;
         let address = loop {
+            let ended = child.try_wait().expect("a child can be waited for");
             let text = stderr.text();
             if let Some(address) = text.lines().find_map(address_in) {
                 break address;
             }
-            assert!(Instant::now() < deadline, "the server names no address: {text}");
+            if ended.is_some() || Instant::now() > deadline {
+                // It may have ended already, which is no failure.
+                child.kill().ok();
+                child.wait().ok();
+                panic!("the server names no address (ended: {ended:?}): {}", stderr.text());
+            }
             thread::sleep(LOOK_EVERY);
         };
         Self { child, stderr, address }

@@ -7,6 +7,7 @@ use coin_tests::{HttpConnection, HttpRequest, HttpServer};
 use rusqlite::{Connection, TransactionBehavior};
 use serde_json::json;
 
+#[cfg(unix)]
 #[test]
 fn a_server_that_is_told_to_end_answers_what_is_under_way() {
     let home = super::home();
@@ -32,6 +33,7 @@ fn a_server_that_is_told_to_end_answers_what_is_under_way() {
     assert_eq!(summary["user_summary"][0]["total_events"], 1);
 }
 
+#[cfg(unix)]
 #[test]
 fn a_stream_that_only_listens_does_not_hold_up_the_end() {
     let home = super::home();

@@ -7,6 +7,7 @@ mod limits;
 mod local;
 mod messages;
 mod names;
+#[cfg(target_os = "linux")]
 mod sessions;
 mod sizes;
 mod strangers;

@@ -1,6 +1,9 @@
 //! Messages that are too large: refused, and forgotten.
 
-use coin_tests::{Era, HttpRequest, HttpServer, ServerProcess, resident_memory};
+use coin_server::transport::MESSAGE_BYTES;
+#[cfg(target_os = "linux")]
+use coin_tests::resident_memory;
+use coin_tests::{Era, HttpRequest, HttpServer, ServerProcess};
 use serde_json::{Value, json};
 
 /// A message of `bytes` bytes, as far as they go; it would record a caption.
@@ -10,11 +13,14 @@ fn large(bytes: usize) -> String {
     json!({"jsonrpc": "2.0", "id": 77, "method": "tools/call", "params": call}).to_string()
 }
 
+#[cfg(target_os = "linux")]
 const TOO_LARGE: usize = 20 << 20;
 
 /// What a server may keep of what it refused, in KiB: as much as it keeps ready for two messages that it would take.
+#[cfg(target_os = "linux")]
 const KEPT: u64 = 40 << 10;
 
+#[cfg(target_os = "linux")]
 #[test]
 fn a_line_of_twenty_megabytes_is_passed_over_with_a_note() {
     let home = super::home();
@@ -32,6 +38,7 @@ fn a_line_of_twenty_megabytes_is_passed_over_with_a_note() {
     assert_eq!(notes, 20, "{}", server.stderr());
 }
 
+#[cfg(target_os = "linux")]
 #[test]
 fn a_line_that_never_ends_takes_no_memory() {
     let home = super::home();
@@ -47,6 +54,7 @@ fn a_line_that_never_ends_takes_no_memory() {
     server.ok("list_users", json!({}));
 }
 
+#[cfg(target_os = "linux")]
 #[test]
 fn a_body_of_twenty_megabytes_is_refused() {
     let home = super::home();
@@ -86,10 +94,10 @@ fn what_is_just_small_enough_is_read() {
     let home = super::home();
     let server = HttpServer::start(home.db());
     let empty = large(0).len();
-    let response = HttpRequest::post(large((4 << 20) - empty)).send(server.address());
+    let response = HttpRequest::post(large(MESSAGE_BYTES - empty)).send(server.address());
     assert_eq!((response.status, &*response.body), (400, "Bad Request: Session ID is required"));
     let mut pipe = home.server();
-    pipe.send_line(&large((4 << 20) - empty - 1));
+    pipe.send_line(&large(MESSAGE_BYTES - empty - 1));
     let answer = pipe.wait(77).unwrap();
     assert_eq!(answer["structuredContent"]["recorded"], Value::from(0), "{answer:.300}");
 }

@@ -1,7 +1,7 @@
 //! A home's server with the fixtures that MCP's conformance suite calls, served as `coin-server --http` is.
 //!
 //! The suite knows no tools of ours. It judges a server by tools, prompts and resources of its own (`test_…`), which a
-//! server under test must have. Here they stand beside the home's; `clients/conformance` runs the suite.
+//! server under test must have. Here they stand beside the home's; `clients/run conformance` runs the suite.
 
 mod content;
 mod dialogue;

@@ -57,7 +57,9 @@ impl Connection {
         self.call(parameters);
         let answer: Value = serde_json::from_str(&self.line).expect("an answer is JSON");
         assert!(answer["id"] == self.id, "the answer to another request: {answer}");
-        answer["result"]["structuredContent"].clone()
+        let content = &answer["result"]["structuredContent"];
+        assert!(content.is_object(), "a result without structured content: {answer}");
+        content.clone()
     }
 
     fn exchange(&mut self, method: &str, parameters: &Value) -> Duration {
