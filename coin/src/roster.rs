@@ -1,6 +1,6 @@
 //! The members of a household as small numbers, so that a set of owners is one machine word.
 
-use coin_schemas::household::{Background, Owners, Score, Scores, UserName, Users};
+use coin_schemas::household::{Background, Owners, OwnershipBoolean, Score, Scores, UserName, Users};
 use thiserror::Error;
 
 use crate::owners::OwnerSet;
@@ -160,6 +160,11 @@ impl Roster {
     pub fn scores(&self, vector: &[Score]) -> Scores {
         assert!(vector.len() == self.len(), "one score for each member");
         self.names().cloned().zip(vector.iter().copied()).collect()
+    }
+
+    /// For every member whether the set holds it.
+    pub fn ownership(&self, set: OwnerSet) -> OwnershipBoolean {
+        self.indices().map(|user| (self.name(user).clone(), set.contains(user))).collect()
     }
 
     /// 1 for the members of the set, 0 for the others.

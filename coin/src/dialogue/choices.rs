@@ -1,5 +1,7 @@
 //! What a form offers a person who is asked whose a thing is, in the person's own words.
 
+use std::collections::HashSet;
+
 use crate::dialogue::Reading;
 use crate::owners::{OwnerSet, candidate_sets};
 use crate::roster::Roster;
@@ -45,12 +47,17 @@ pub fn choices(roster: &Roster, likely: impl IntoIterator<Item = OwnerSet>) -> V
         words: words(roster, owners),
         meaning: Meaning::Says(Reading { owners, outside_household: false }),
     };
-    sets.into_iter()
+    let mut choices: Vec<Choice> = sets
+        .into_iter()
         .map(of_set)
         .chain([Choice { words: "nobody here owns it".to_owned(), meaning: Meaning::Says(outside) }])
         .chain(own_words)
         .chain([Choice { words: "I do not know".to_owned(), meaning: Meaning::Says(Reading::default()) }])
-        .collect()
+        .collect();
+    // Somebody may be called "Bob and Mary", beside Bob and Mary.
+    let mut offered = HashSet::new();
+    choices.retain(|choice| offered.insert(choice.words.clone()));
+    choices
 }
 
 /// What a choice says, by its words; `None` where no form of this household offers such words.

@@ -53,7 +53,7 @@ pub enum Conclusion<'a> {
         standing: Standing,
         /// Who else is plausible.
         others: OwnerSet,
-        /// The model that scored, where it is not the evidence model.
+        /// The model that scored, where it is not the evidence model; empty where it did not tell its name.
         model: Option<&'a str>,
     },
 }
@@ -125,7 +125,11 @@ pub fn explain(explained: &Explained<'_>) -> String {
             let reading = Reading { owners, outside_household: false };
             let belongs = belongs(roster, reading, &thing, adverb(standing, confidence));
             let percent = percent(confidence);
-            let source = model.map_or(String::new(), |model| format!(", says the model {model:?}"));
+            let source = match model {
+                None => String::new(),
+                Some("") => ", says the model that scored it".to_owned(),
+                Some(model) => format!(", says the model {model:?}"),
+            };
             let conclusion = match standing {
                 Standing::Settled => format!("{name} {belongs} ({percent}{source})."),
                 Standing::Open if others.is_empty() => {

@@ -14,7 +14,7 @@ use libm::{lgamma, log};
 use coin_schemas::household::Score;
 
 pub use context::WeighedContext;
-pub use newcomers::judge;
+pub use newcomers::{Arrivals, judge};
 
 use crate::common_sense::Expectation;
 use crate::owners::{OwnerSet, OwnerSetDistribution, candidate_sets};

@@ -11,27 +11,52 @@ use crate::common_sense::expect;
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::{Roster, RosterError};
 
+/// Who can own a thing, as far as joining the household goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Arrivals {
+    /// Those who were not there yet at the moment for which a thing is judged. They are no candidates.
+    pub absent: OwnerSet,
+    /// Those who joined after the thing was first used.
+    pub newcomers: OwnerSet,
+}
+
 /// What the evidence model and the common sense about classes make of a thing of this class.
 ///
-/// `newcomers` are those who joined the household after the thing was first used. One who has not used it since is no
-/// candidate: the thing is judged as if this person were not there. There is one exception, a thing that then seems to
-/// be everybody's. Whether "everybody" now means the newcomer too is just what is open, so that it is judged anew
-/// among all.
+/// A newcomer who has not used the thing is no candidate: it is judged as if this person were not there. There is one
+/// exception, a thing that then seems to be everybody's. Whether "everybody" now means the newcomer too is just what is
+/// open, so that it is judged anew among all who are there.
 ///
 /// # Errors
 /// If the context names people who are not of the household.
 pub fn judge(
     roster: &Roster,
-    newcomers: OwnerSet,
+    arrivals: Arrivals,
     class: &ClassLabel,
     context: &GivenContext,
     parameters: &EvidenceParameters,
 ) -> Result<OwnerSetDistribution, RosterError> {
     let sessions = WeighedContext::new(roster, class, context)?.sessions;
-    let candidates: OwnerSet =
-        roster.indices().filter(|user| !newcomers.contains(*user) || sessions[user.place()] > 0).collect();
-    let everyone = roster.everyone();
-    if candidates == everyone || candidates.is_empty() {
+    let members: OwnerSet = roster.indices().filter(|&user| !arrivals.absent.contains(user)).collect();
+    let candidates: OwnerSet = members
+        .iter()
+        .filter(|&user| !arrivals.newcomers.contains(user) || sessions[user.place()] > 0)
+        .collect();
+    let among = judge_among(roster, candidates, class, context, parameters)?;
+    if among.best().0 == candidates && candidates.len() > 1 && candidates != members {
+        return judge_among(roster, members, class, context, parameters);
+    }
+    Ok(among)
+}
+
+/// The same among some, or among all where nobody is left.
+fn judge_among(
+    roster: &Roster,
+    candidates: OwnerSet,
+    class: &ClassLabel,
+    context: &GivenContext,
+    parameters: &EvidenceParameters,
+) -> Result<OwnerSetDistribution, RosterError> {
+    if candidates == roster.everyone() || candidates.is_empty() {
         return judge_all(roster, class, context, parameters);
     }
     let users: Users =
@@ -40,13 +65,9 @@ pub fn judge(
     // The candidates keep their order, so that the i-th of the smaller roster is the i-th candidate.
     let places: Vec<_> = candidates.iter().collect();
     let widened = |set: OwnerSet| set.iter().filter_map(|user| places.get(user.place()).copied()).collect();
-    let among = OwnerSetDistribution::from_log_weights(
+    Ok(OwnerSetDistribution::from_log_weights(
         among.entries().iter().map(|&(set, probability)| (widened(set), libm::log(probability))),
-    );
-    match among.best().0 {
-        best if best == candidates && candidates.len() > 1 => judge_all(roster, class, context, parameters),
-        _ => Ok(among),
-    }
+    ))
 }
 
 fn judge_all(

@@ -50,7 +50,8 @@ fn marker() -> ClassLabel {
 }
 
 fn judged(roster: &Roster, newcomers: OwnerSet, context: &GivenContext) -> OwnerSetDistribution {
-    judge(roster, newcomers, &marker(), context, &EvidenceParameters::default()).unwrap()
+    let arrivals = Arrivals { absent: OwnerSet::EMPTY, newcomers };
+    judge(roster, arrivals, &marker(), context, &EvidenceParameters::default()).unwrap()
 }
 
 #[test]
@@ -101,6 +102,17 @@ fn whether_everybodys_thing_is_the_newcomers_too_is_open() {
 }
 
 #[test]
+fn who_is_not_there_yet_shares_nothing() {
+    let (roster, ann) = with_ann();
+    let shared = context(&[("Bob", 9), ("Mary", 8), ("Tom", 9)], None);
+    let arrivals = Arrivals { absent: ann, newcomers: OwnerSet::EMPTY };
+    let then = judge(&roster, arrivals, &marker(), &shared, &EvidenceParameters::default()).unwrap();
+    let before = judged(&founders(), OwnerSet::EMPTY, &shared);
+    assert_eq!(roster.owners(then.best().0), founders().owners(before.best().0));
+    assert!((then.best().1 - before.best().1).abs() < 1e-12);
+}
+
+#[test]
 fn what_a_newcomer_owns_says_nothing_of_what_others_have_used() {
     let (roster, ann) = with_ann();
     let sessions = [("Bob", 6), ("Mary", 1)];
@@ -112,7 +124,7 @@ fn what_a_newcomer_owns_says_nothing_of_what_others_have_used() {
 fn strangers_are_refused() {
     let error = judge(
         &founders(),
-        OwnerSet::EMPTY,
+        Arrivals { absent: OwnerSet::EMPTY, newcomers: OwnerSet::EMPTY },
         &marker(),
         &context(&[("Zoe", 1)], None),
         &EvidenceParameters::default(),
