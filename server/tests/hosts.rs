@@ -205,21 +205,25 @@ fn the_doctor_finds_a_healthy_home_and_leaves_no_trace() {
 fn the_doctor_names_what_is_wrong_and_what_to_do() {
     let user = User::new();
     user.import();
-    let entry = json!({"mcpServers": {"coin": {"command": user.path("gone/coin-server"), "args": []}}});
+    let entry = json!({"mcpServers": {"coin": {
+        "command": user.path("gone/coin-server"),
+        "args": ["--db", user.path("office.db"), "--tools=core"],
+    }}});
     fs::write(user.path(".claude.json"), entry.to_string()).unwrap();
     fs::create_dir(user.path(".cursor")).unwrap();
     fs::write(user.path(".cursor/mcp.json"), "{").unwrap();
     fs::write(user.path("other.db"), "this is no database, and it is long enough to be looked at").unwrap();
+    // What is advised keeps the entry's own database, and not the one that the doctor was asked about.
+    let again = format!(
+        "→ coin-server install claude-code --name \"coin\" --db {:?} --tools core",
+        user.path("office.db")
+    );
     let output = user.run(&["doctor", "--db", "other.db"]);
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
     let shown = text(&output.stdout);
-    for part in [
-        "it is not a SQLite database",
-        "which does not exist",
-        "→ coin-server install claude-code --name coin",
-        "is no valid JSON",
-        "Problems 3",
-    ] {
+    for part in
+        ["it is not a SQLite database", "which does not exist", &again, "is no valid JSON", "Problems 3"]
+    {
         assert!(shown.contains(part), "{part:?} is missing:\n{shown}");
     }
 }

@@ -40,7 +40,7 @@ impl Run<'_> {
             let (question, reply) = self.put(step, &object).await?;
             match reply {
                 Reply::Read { reading, answer, answered_by } => {
-                    let ownership = self.driver.ownership(reading.owners);
+                    let ownership = self.driver.roster.ownership(reading.owners);
                     let status = match reading.is_unresolved() {
                         true => AnswerStatus::Unresolved,
                         false => AnswerStatus::Answered,
@@ -170,7 +170,7 @@ impl Run<'_> {
             question: String::new(),
             answer: String::new(),
             answered_by: None,
-            ownership: self.driver.ownership(OwnerSet::EMPTY),
+            ownership: self.driver.roster.ownership(OwnerSet::EMPTY),
             status: AnswerStatus::Unresolved,
             uncertainty_before: state.assessment().map_or(1.0, |assessment| assessment.uncertainty),
             prediction_set_before: roster.owners(prediction_set),

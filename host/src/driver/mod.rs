@@ -10,7 +10,7 @@ use coin::agent::{Agent, Effect, Event, ObjectState, UnexpectedEvent};
 use coin::owners::OwnerSet;
 use coin::roster::Roster;
 use coin_schemas::events::LogEvent;
-use coin_schemas::household::{ObjectId, OwnershipBoolean, Source};
+use coin_schemas::household::{ObjectId, Source};
 use coin_schemas::model::TaskObject;
 use coin_schemas::report::{QuestionReport, Stopped};
 use coin_schemas::tools::{RecordScores, RecordScoresResult};
@@ -210,10 +210,6 @@ impl Run<'_> {
 }
 
 impl Driver<'_> {
-    fn ownership(&self, owners: OwnerSet) -> OwnershipBoolean {
-        self.roster.indices().map(|user| (self.roster.name(user).clone(), owners.contains(user))).collect()
-    }
-
     fn standings(&self, agent: &Agent) -> BTreeMap<ObjectId, Standing> {
         let unknown = ObjectState::default();
         self.things

@@ -129,10 +129,7 @@ impl ChatModel for EmbeddedModel {
                     answered_by.map(|name| roster.index_of(name.as_str())).transpose().map_err(malformed)?;
                 let reading = read_answer(&roster, &question, &answer, speaker);
                 say(&ReadingReply {
-                    ownership_boolean: roster
-                        .indices()
-                        .map(|user| (roster.name(user).clone(), reading.owners.contains(user)))
-                        .collect(),
+                    ownership_boolean: roster.ownership(reading.owners),
                     owner_outside_household: reading.outside_household,
                 })
             }

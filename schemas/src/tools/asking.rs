@@ -10,12 +10,12 @@ use crate::household::{Owners, Scores};
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AskOwner {
-    /// Id of the thing. Default: the one that next_question names.
+    /// Id of the thing. Default, without owner: the one that next_question names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub object_id: Option<String>,
-    /// What the person said in the chat, in the person's own words ("Bob's and mine"). Give it only if you have asked
-    /// there; then no form is shown. Say names instead of "mine".
+    /// What the person said in the chat about object_id, in the person's own words, with names instead of "mine". Give
+    /// it only if you have asked there; then no form is shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub owner: Option<String>,

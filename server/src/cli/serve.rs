@@ -1,11 +1,12 @@
 //! `coin-server` without a command: serving a home.
 
 use std::env;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use axum::http::uri::Authority;
 use clap::Args;
 use tokio::runtime;
 use tokio_util::sync::CancellationToken;
@@ -46,7 +47,7 @@ struct Network {
     #[arg(long, value_name = "FILE", requires = "http")]
     token_file: Option<PathBuf>,
     /// A further name by which clients call this server, such as the computer's name; may be repeated
-    #[arg(long, value_name = "NAME", requires = "http")]
+    #[arg(long, value_name = "NAME", requires = "http", value_parser = host)]
     allow_host: Vec<String>,
     /// How many requests one address may send in a second
     #[arg(long, value_name = "N", requires = "http", default_value_t = Limits::default().requests_per_second)]
@@ -58,6 +59,17 @@ fn address(text: &str) -> Result<SocketAddr, String> {
         "an address is such as 127.0.0.1:8750 (for this computer alone) or 0.0.0.0:8750 (for others too, with a token)"
             .to_owned()
     })
+}
+
+fn host(text: &str) -> Result<String, String> {
+    let names_no_more = match text.parse::<Authority>() {
+        Ok(authority) => authority.host() == text,
+        Err(_) => false,
+    };
+    match names_no_more || text.parse::<IpAddr>().is_ok() {
+        true => Ok(text.to_owned()),
+        false => Err("name the host alone, without a scheme, a port or a path, such as home.lan".to_owned()),
+    }
 }
 
 pub(super) fn run(serve: &Serve) -> Result<(), Failure> {

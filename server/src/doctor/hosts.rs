@@ -29,28 +29,28 @@ pub(super) fn examine(host: Host, surroundings: &Surroundings) -> Vec<Finding> {
             let found = format!("{} has no coin-server", file.path().display());
             vec![advice(Level::Note, subject, found, install)]
         }
-        Ok(entries) => entries
-            .iter()
-            .map(|(name, entry)| {
-                let again = format!("{install} --name {name} --db {:?}", surroundings.database);
-                judge(subject, name, entry, surroundings, &again)
-            })
-            .collect(),
+        Ok(entries) => {
+            entries.iter().map(|(name, entry)| judge(subject, name, entry, surroundings, &install)).collect()
+        }
     }
 }
 
-/// The gravest thing about one entry.
-fn judge(subject: &str, name: &str, entry: &Entry, surroundings: &Surroundings, again: &str) -> Finding {
+/// The gravest thing about one entry. To be entered again, it keeps its database, unless that is what is wrong.
+fn judge(subject: &str, name: &str, entry: &Entry, surroundings: &Surroundings, install: &str) -> Finding {
     let program = entry.program();
     let database = entry.database().unwrap_or_else(|| surroundings.default_database.clone());
-    let at_fault = |level, found: String| advice(level, subject, format!("{name:?} {found}"), again);
-    if program.is_absolute() && !program.exists() {
-        let found = format!("starts {}, which does not exist", program.display());
-        return at_fault(Level::Problem, found);
-    }
+    let tools = entry.tools().map_or(String::new(), |tools| format!(" --tools {tools}"));
+    let again = |database: &Path| format!("{install} --name {name:?} --db {database:?}{tools}");
+    let at_fault = |level, found: String, database: &Path| {
+        advice(level, subject, format!("{name:?} {found}"), again(database))
+    };
     if program.is_relative() || database.is_relative() {
         let found = "names its program or its database without a folder; the host may not find it";
-        return at_fault(Level::Warning, found.to_owned());
+        return at_fault(Level::Warning, found.to_owned(), &surroundings.database);
+    }
+    if !program.exists() {
+        let found = format!("starts {}, which does not exist", program.display());
+        return at_fault(Level::Problem, found, &database);
     }
     if !database.exists() {
         let found = format!("uses the database {}, which does not exist yet", database.display());
@@ -58,10 +58,12 @@ fn judge(subject: &str, name: &str, entry: &Entry, surroundings: &Surroundings, 
         return advice(Level::Warning, subject, format!("{name:?} {found}"), next);
     }
     if !same(&database, &surroundings.database) {
-        return at_fault(Level::Note, format!("uses another database, {}", database.display()));
+        let found = format!("uses another database, {}", database.display());
+        return at_fault(Level::Note, found, &surroundings.database);
     }
     if !same(program, &surroundings.program) {
-        return at_fault(Level::Note, format!("starts another program than this one, {}", program.display()));
+        let found = format!("starts another program than this one, {}", program.display());
+        return at_fault(Level::Note, found, &database);
     }
     finding(Level::Ok, subject, format!("{name:?} starts this program with this database"))
 }

@@ -46,13 +46,22 @@ impl Entry {
 
     /// The database that it names; `None` stands for the default one.
     pub(crate) fn database(&self) -> Option<PathBuf> {
+        self.value_of("--db").map(PathBuf::from)
+    }
+
+    /// The tools that it selects; `None` stands for all.
+    pub(crate) fn tools(&self) -> Option<&str> {
+        self.value_of("--tools")
+    }
+
+    fn value_of(&self, option: &str) -> Option<&str> {
         let mut args = self.args.iter();
         while let Some(argument) = args.next() {
-            if argument == "--db" {
-                return args.next().map(PathBuf::from);
+            if argument == option {
+                return args.next().map(String::as_str);
             }
-            if let Some(file) = argument.strip_prefix("--db=") {
-                return Some(PathBuf::from(file));
+            if let Some(value) = argument.strip_prefix(option).and_then(|rest| rest.strip_prefix('=')) {
+                return Some(value);
             }
         }
         None

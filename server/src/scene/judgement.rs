@@ -1,14 +1,16 @@
 //! Whose a thing is, with what is known of it, and without any language model.
 
 use coin::calibration::{Assessment, EMBEDDED_MODEL, Thresholds};
+use coin::captions::civil_seconds;
 use coin::dialogue::{
     Conclusion, Explained, Grounds, Reading, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };
-use coin::evidence::{EvidenceParameters, Relation, judge, likeness_counts};
+use coin::evidence::{Arrivals, EvidenceParameters, Relation, judge, likeness_counts};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::roster::Roster;
 use coin::sharing::ShareThresholds;
-use coin_schemas::household::{Owners, Score, Source};
+use coin::space::Neighbourhood;
+use coin_schemas::household::{ObjectId, Owners, Score, Source};
 use coin_schemas::model::GivenContext;
 use coin_schemas::tools::{
     AnswerEvidence, DEFAULT_K, Evidence, KnownOwnership, LookAlikeEvidence, NeighbourEvidence, UsageEvidence,
@@ -89,7 +91,7 @@ impl Scene<'_> {
             Moment::Present => self.present()?,
             Moment::Past(as_of) => as_of,
         };
-        let context = self.context(object, as_of)?;
+        let context = self.context(object, moment, as_of)?;
         let inference = match moment {
             Moment::Present => self.reader.inference(object.key)?,
             // It is not known when a model's scores were made.
@@ -105,7 +107,7 @@ impl Scene<'_> {
                 (scores, distribution, thresholds, Basis::Model { name: inference.model })
             }
             None => {
-                let distribution = self.weigh(object, &context)?;
+                let distribution = self.weigh(object, &context, as_of)?;
                 let scores = distribution.marginals(self.household.roster().len());
                 (scores, distribution, thresholds_of(Some(EMBEDDED_MODEL)), Basis::Evidence)
             }
@@ -149,27 +151,62 @@ impl Scene<'_> {
         })
     }
 
-    fn context(&self, object: &StoredObject, as_of: DateTime) -> Result<GivenContext, StoreError> {
+    fn context(
+        &self,
+        object: &StoredObject,
+        moment: Moment,
+        as_of: DateTime,
+    ) -> Result<GivenContext, StoreError> {
         let similar_objects = match self.look_alikes(object, DEFAULT_K as usize)? {
             LookAlikes::Found(found) => found,
             LookAlikes::NeverSeen | LookAlikes::NothingToCompare => Vec::new(),
         };
-        Ok(GivenContext {
+        let mut context = GivenContext {
             usage: Some(self.usage(object, Window::usual(as_of), 0)?),
-            nearby_objects: self.nearby(object, &coin::space::Neighbourhood::default())?,
+            nearby_objects: self.nearby(object, &Neighbourhood::default())?,
             similar_objects,
-        })
+        };
+        if moment != Moment::Present {
+            for near in &mut context.nearby_objects {
+                self.hide_later(&near.id, as_of, &mut near.known_ownership)?;
+            }
+            for alike in &mut context.similar_objects {
+                self.hide_later(&alike.id, as_of, &mut alike.known_ownership)?;
+            }
+        }
+        Ok(context)
+    }
+
+    /// Hides what was not known of another thing's owners then. Of what a model concluded it is not known since when.
+    fn hide_later(
+        &self,
+        id: &ObjectId,
+        as_of: DateTime,
+        known: &mut Option<KnownOwnership>,
+    ) -> Result<(), StoreError> {
+        let answer = match self.reader.object_key(id.as_str())? {
+            Some(key) => self.reader.present_answer(&self.household, key)?,
+            None => None,
+        };
+        if answer.is_none_or(|answer| answer.at > as_of) {
+            *known = None;
+        }
+        Ok(())
     }
 
     fn weigh(
         &self,
         object: &StoredObject,
         context: &GivenContext,
+        as_of: DateTime,
     ) -> Result<OwnerSetDistribution, StoreError> {
         let first_used = self.reader.first_used(object.key)?;
-        let newcomers = first_used.map(|first| self.household.newcomers_after(first)).unwrap_or_default();
+        let arrivals = Arrivals {
+            absent: self.household.newcomers_after(civil_seconds(as_of)),
+            newcomers: first_used.map(|first| self.household.newcomers_after(first)).unwrap_or_default(),
+        };
         let parameters = EvidenceParameters::default();
-        Ok(judge(self.household.roster(), newcomers, &object.class, context, &parameters)?)
+        Ok(judge(self.household.roster(), arrivals, &object.class, context, &parameters)?)
     }
 
     /// Scores as a model handed them in. Who has joined since owns nothing as far as it knew.
@@ -250,7 +287,7 @@ impl Scene<'_> {
                     .filter(|user| judgement.scores[user.place()].value() >= POSSIBLE)
                     .collect(),
                 model: match &judgement.basis {
-                    Basis::Model { name } => Some(name.as_deref().unwrap_or("that scored it")),
+                    Basis::Model { name } => Some(name.as_deref().unwrap_or_default()),
                     Basis::Answer(_) | Basis::Evidence => None,
                 },
             },
@@ -273,7 +310,7 @@ impl Scene<'_> {
         });
         let parameters = EvidenceParameters::default();
         let near = evidence.neighbours.iter().map(|other| {
-            let weight = coin::space::weight(other.distance, coin::space::Neighbourhood::default().sigma);
+            let weight = coin::space::weight(other.distance, Neighbourhood::default().sigma);
             let relation = SeenRelation::Near { distance: other.distance };
             (parameters.coupling(Relation::Near { weight }), &other.name, &other.owners, relation)
         });

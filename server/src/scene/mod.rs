@@ -35,7 +35,7 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// If nobody lives there, and failures of the database.
     pub(crate) fn new(reader: &'a Reader<'a>) -> Result<Self, StoreError> {
-        let household = reader.household()?.ok_or(coin::roster::RosterError::NoUsers)?;
+        let household = reader.household()?.ok_or(StoreError::NobodyLivesHere)?;
         Ok(Self {
             reader,
             household,

@@ -32,6 +32,7 @@ impl Scene<'_> {
             if matches!(beliefs.get(&object.key), Some(Belief::Answered { .. })) {
                 continue;
             }
+            self.reader.go_on()?;
             let judgement = self.judge(object, Moment::Present)?;
             if !judgement.is_settled() {
                 unsettled.insert(&object.id, (object, judgement));

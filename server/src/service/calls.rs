@@ -8,7 +8,7 @@ use rmcp::service::RequestContext;
 use rmcp::{ErrorData, RoleServer};
 use serde_json::Value;
 
-use super::work::{self, Fault};
+use super::work;
 use super::{CallError, CoinService, forms};
 use crate::store::{Call, Store};
 use crate::tools::{Entry, FORM_LIFETIME, Form, Person, ToolError, Turn};
@@ -66,7 +66,11 @@ impl CoinService {
     /// Shows a form while the call is under way. A client that cannot show it after all is one that shows none.
     async fn put(&self, form: Form, context: &RequestContext<RoleServer>) -> Person {
         let asked = context.peer.create_elicitation_with_timeout(forms::request(&form), Some(FORM_LIFETIME));
-        match asked.await.ok().and_then(forms::reply) {
+        let answered = tokio::select! {
+            answered = asked => answered.ok(),
+            () = context.ct.cancelled() => None,
+        };
+        match answered.and_then(forms::reply) {
             Some(reply) => Person::Replied { state: form.state, reply },
             None => Person::OutOfReach,
         }
@@ -85,15 +89,9 @@ impl CoinService {
         } else {
             let (service, request) = (self.clone(), request.clone());
             let act = move |call: &Call| service.act(&service.store.during(call), &request, person, forms);
-            work::run(context, act).await
+            work::run(&self.places, context, act).await
         };
-        done.map_err(|Fault| {
-            Failure::Tool(
-                "the tool stopped because of a fault in the server, and nothing was changed; the server's log \
-                 (stderr) says more"
-                    .to_owned(),
-            )
-        })?
+        done.map_err(|undone| Failure::Tool(undone.to_string()))?
     }
 
     /// Whether a call is over before it could be handed to another thread: the tool looks at one thing only, and a
@@ -124,7 +122,8 @@ impl CoinService {
             Forms::None => Person::OutOfReach,
             Forms::BetweenCalls | Forms::DuringCalls => Person::WithinReach,
         };
-        let Some(sealed) = &request.request_state else { return Ok(without_reply) };
+        let asks = self.tools.get(&request.name).is_some_and(Entry::asks);
+        let Some(sealed) = request.request_state.as_ref().filter(|_| asks) else { return Ok(without_reply) };
         let arguments = request.arguments.clone().unwrap_or_default();
         let state = forms::open(store, &request.name, &arguments, sealed)
             .map_err(|source| Failure::Request(source.to_string()))?;
@@ -153,7 +152,9 @@ impl CoinService {
                     .map_err(|source| Failure::Tool(source.to_string()))?;
                 Ok(Outcome::Ask(form, sealed))
             }
-            Err(spent @ ToolError::SpentForm) => Err(Failure::Request(format!("requestState: {spent}"))),
+            Err(stale @ ToolError::StaleForm { .. }) => {
+                Err(Failure::Request(format!("requestState: {stale}")))
+            }
             Err(error) => Err(Failure::Tool(error.to_string())),
         }
     }

@@ -8,11 +8,16 @@ use super::prompts::{ANSWERED_BY, OBJECT_ID};
 use super::resources::internal;
 use super::{prompts, resources};
 use crate::store::{Household, Store, StoreError, StoredObject};
+use crate::tools::Registry;
 
 /// The values that go on from what was typed, best first. A thing is found by its id and by the name of its class.
-pub(super) fn complete(store: &Store, request: &CompleteRequestParams) -> Result<CompletionInfo, ErrorData> {
+pub(super) fn complete(
+    store: &Store,
+    tools: &Registry,
+    request: &CompleteRequestParams,
+) -> Result<CompletionInfo, ErrorData> {
     let known = match &request.r#ref {
-        Reference::Prompt(prompt) => prompts::list().iter().any(|known| known.name == prompt.name),
+        Reference::Prompt(prompt) => prompts::list(tools).iter().any(|known| known.name == prompt.name),
         Reference::Resource(template) => {
             resources::templates().iter().any(|known| known.uri_template == template.uri)
         }

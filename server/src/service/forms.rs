@@ -53,7 +53,9 @@ pub(super) fn open(
     arguments: &JsonObject,
     sealed: &str,
 ) -> Result<FormState, SealError> {
-    let codec = RequestStateCodec::try_new(key(store)?.to_vec())?;
+    // Where there is no key yet, no form was ever sealed.
+    let key = known_key(store)?.ok_or(RequestStateError::UnknownKeyId)?;
+    let codec = RequestStateCodec::try_new(key.to_vec())?;
     Ok(codec.open_json_with(sealed, &bound_to(tool, arguments))?)
 }
 
@@ -63,10 +65,13 @@ fn bound_to(tool: &str, arguments: &JsonObject) -> Vec<u8> {
     format!("{tool}\0{}", serde_json::to_string(&sorted).unwrap_or_default()).into_bytes()
 }
 
+fn known_key(store: &Store) -> Result<Option<[u8; FORM_KEY_BYTES]>, SealError> {
+    store.read(|reader| Ok(reader.form_key()?))
+}
+
 /// The home's key, which is made when the first form is.
 fn key(store: &Store) -> Result<[u8; FORM_KEY_BYTES], SealError> {
-    let known = store.read(|reader| Ok::<_, SealError>(reader.form_key()?))?;
-    if let Some(key) = known {
+    if let Some(key) = known_key(store)? {
         return Ok(key);
     }
     let mut proposed = [0; FORM_KEY_BYTES];

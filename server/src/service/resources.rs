@@ -115,7 +115,9 @@ fn of_home() -> Vec<Resource> {
             .with_mime_type(JSON),
         Resource::new(OBJECTS, "objects")
             .with_title("The things")
-            .with_description("All things of the home, where they are and who is held to own them.")
+            .with_description(
+                "The first 500 things of the home, where they are and who is recorded to own them.",
+            )
             .with_mime_type(JSON),
     ]
 }

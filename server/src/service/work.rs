@@ -4,12 +4,14 @@
 
 use std::convert::Infallible;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::time::Duration;
 
 use rmcp::RoleServer;
 use rmcp::model::ProgressNotificationParam;
 use rmcp::service::RequestContext;
-use tokio::sync::watch;
+use thiserror::Error;
+use tokio::sync::{Semaphore, watch};
 use tokio::time::{Instant, sleep_until};
 
 use crate::store::{Call, Progress};
@@ -17,27 +19,50 @@ use crate::store::{Call, Progress};
 /// The least time between two notes on progress, so that a long call does not flood its client.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
-/// The work has a fault: it panicked.
-#[derive(Debug)]
-pub(super) struct Fault;
+/// How many requests of all clients are worked on at once. Those that wait for the disk count.
+pub(super) const WORK_AT_ONCE: usize = 128;
+
+/// Why work was not done to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub(super) enum Undone {
+    /// It panicked.
+    #[error(
+        "the server has a fault: the call stopped, and nothing was changed; the server's log (stderr) says more"
+    )]
+    Fault,
+    /// There is too much of it.
+    #[error("{WORK_AT_ONCE} requests are being worked on already; try again in a moment")]
+    TooMuch,
+}
+
+/// A call that nobody waits for any more when this is dropped.
+struct WaitedFor(Call);
+
+impl Drop for WaitedFor {
+    fn drop(&mut self) {
+        self.0.interrupt();
+    }
+}
 
 /// Does work at once, on this thread. It must be brief, because whatever else this thread serves waits for it.
 ///
 /// # Errors
 /// If the work panicked.
-pub(super) fn run_brief<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
+pub(super) fn run_brief<T>(work: impl FnOnce() -> T) -> Result<T, Undone> {
     // What the work has changed in the home was rolled back, and nothing else of it is seen again.
-    catch_unwind(AssertUnwindSafe(work)).map_err(|_| Fault)
+    catch_unwind(AssertUnwindSafe(work)).map_err(|_| Undone::Fault)
 }
 
-/// Does the work of a request on a thread that may wait.
+/// Does the work of a request on a thread that may wait, in one of the `places` that there are for it.
 ///
 /// # Errors
-/// If the work panicked.
+/// If none is, or if the work panicked.
 pub(super) async fn run<T: Send + 'static>(
+    places: &Arc<Semaphore>,
     context: &RequestContext<RoleServer>,
     work: impl FnOnce(&Call) -> T + Send + 'static,
-) -> Result<T, Fault> {
+) -> Result<T, Undone> {
+    let place = Arc::clone(places).try_acquire_owned().map_err(|_| Undone::TooMuch)?;
     let (told, progress) = watch::channel(None);
     let call = match context.meta.get_progress_token() {
         Some(_) => Call::with_listener(move |progress| {
@@ -45,17 +70,21 @@ pub(super) async fn run<T: Send + 'static>(
         }),
         None => Call::default(),
     };
-    let working = call.clone();
-    let mut work = tokio::task::spawn_blocking(move || work(&working));
+    let waited_for = WaitedFor(call.clone());
+    let mut work = tokio::task::spawn_blocking(move || {
+        let outcome = work(&call);
+        drop(place);
+        outcome
+    });
     let outcome = tokio::select! {
         outcome = &mut work => outcome,
         never = tell(context, progress) => match never {},
         () = context.ct.cancelled() => {
-            call.interrupt();
+            drop(waited_for);
             work.await
         }
     };
-    outcome.map_err(|_| Fault)
+    outcome.map_err(|_| Undone::Fault)
 }
 
 /// Tells the client how far the work has come, where it wants to know, until nobody polls this any more.

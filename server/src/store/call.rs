@@ -90,8 +90,8 @@ impl Call {
         Self { shared: Arc::new(Shared { state: Mutex::default(), listener: Some(Box::new(listener)) }) }
     }
 
-    /// Stops the call: the statement that runs is broken off, no other begins, and what was not committed by then
-    /// is not kept.
+    /// Stops the call: the statement that runs is broken off, the work ends at the next step that asks, and what was not
+    /// committed by then is not kept.
     pub fn interrupt(&self) {
         let mut state = self.state();
         if let State::Inside(handle) = &*state {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use coin::captions::CaptionError;
 use coin::roster::RosterError;
 use coin_schemas::household::InvalidValue;
 use rusqlite::ErrorCode;
@@ -120,6 +121,12 @@ pub enum StoreError {
         /// What SQLite says.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
+    /// A line is no caption.
+    #[error(transparent)]
+    Caption(#[from] CaptionError),
+    /// There is nobody whose things the home's things could be.
+    #[error("nobody lives in this home yet; add its members with add_user, or import an episode")]
+    NobodyLivesHere,
     /// The people do not make a household.
     #[error(transparent)]
     Roster(#[from] RosterError),

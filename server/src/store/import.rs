@@ -1,11 +1,12 @@
 //! An episode becomes a home.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
-use coin_schemas::episode::EpisodeObject;
-use coin_schemas::household::{Background, UserName};
+use coin::captions::{CaptionReader, Observation};
+use coin::roster::Roster;
+use coin_schemas::episode::{CaptionLine, EpisodeObject};
 
-use super::household::Household;
 use super::map::{ObjectKey, StoredObject};
 use super::usage::{UsageCounts, UsageRecord};
 use super::{Store, StoreError, Writer};
@@ -41,11 +42,12 @@ impl Writer<'_> {
         let episode = &loaded.episode;
         let keys = if self.is_empty()? { self.furnish(loaded)? } else { self.recognise(loaded)? };
         self.put_recording(&episode.name, episode.now)?;
-        let household = self.household()?.ok_or(coin::roster::RosterError::NoUsers)?;
+        let household = self.household()?.ok_or(StoreError::NobodyLivesHere)?;
+        let observations = observed_by(household.roster(), loaded)?;
         let records = loaded
             .captions
             .iter()
-            .zip(&loaded.observations)
+            .zip(observations.iter())
             .map(|(line, observation)| {
                 let object = keys.get(line.object_id.as_str()).copied();
                 object
@@ -91,9 +93,9 @@ impl Writer<'_> {
             None => return Err(other("it was not imported from an episode".to_owned())),
         }
         let household = self.household()?;
-        for (name, background) in &episode.users {
-            if !knows(household.as_ref(), name, background) {
-                return Err(other(format!("it does not know {name} as the episode does")));
+        for name in episode.users.keys() {
+            if household.as_ref().is_none_or(|home| home.roster().index_of(name.as_str()).is_err()) {
+                return Err(other(format!("it does not know {name}")));
             }
         }
         let mut keys = HashMap::new();
@@ -126,11 +128,15 @@ fn visible(loaded: &LoadedEpisode, place: usize) -> Option<&Feature> {
     feature.iter().any(|&component| component != 0.0).then_some(feature)
 }
 
-fn knows(household: Option<&Household>, name: &UserName, background: &Background) -> bool {
-    household.is_some_and(|household| {
-        let roster = household.roster();
-        roster.index_of(name.as_str()).is_ok_and(|user| roster.background(user) == background)
-    })
+/// What the captions say to this household. They were read with the episode's people; where others have joined the
+/// home since, they are read again, because people are told by their place among all.
+fn observed_by<'a>(roster: &Roster, loaded: &'a LoadedEpisode) -> Result<Cow<'a, [Observation]>, StoreError> {
+    if roster.names().eq(loaded.roster.names()) {
+        return Ok(Cow::Borrowed(&loaded.observations));
+    }
+    let reader = CaptionReader::new(roster);
+    let read = |line: &CaptionLine| Ok(reader.read(&line.caption)?);
+    loaded.captions.iter().map(read).collect::<Result<Vec<_>, StoreError>>().map(Cow::Owned)
 }
 
 fn is_same(stored: &StoredObject, object: &EpisodeObject) -> bool {

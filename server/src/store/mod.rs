@@ -114,9 +114,10 @@ impl Store {
     ) -> Result<T, E> {
         let mut lent = self.connections.reader();
         let connection = lent.connection().ok_or(StoreError::Interrupted)?;
-        let _visit = self.call.enter(connection)?;
+        // The visit ends before the transaction does: an interruption must not hit its end.
         let moment = Moment::begin(connection)?;
-        work(&Reader { connection: moment.connection })
+        let _visit = self.call.enter(connection)?;
+        work(&Reader { connection: moment.connection, call: &self.call })
     }
 
     /// Changes the home, all or nothing: where `work` fails, nothing of it is kept.
@@ -128,10 +129,14 @@ impl Store {
         work: impl FnOnce(&Writer<'_>) -> Result<T, E>,
     ) -> Result<T, E> {
         let mut connection = self.connections.writer()?;
-        let _visit = self.call.enter(&connection)?;
+        self.call.go_on()?;
         let transaction =
             connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(StoreError::from)?;
-        let value = work(&Writer { reader: Reader { connection: &transaction }, call: &self.call })?;
+        let value = {
+            // An interruption reaches the work, but neither the commit nor the end of what is given up.
+            let _visit = self.call.enter(&transaction)?;
+            work(&Writer { reader: Reader { connection: &transaction, call: &self.call } })?
+        };
         self.call.go_on()?;
         transaction.commit().map_err(StoreError::from)?;
         Ok(value)
@@ -142,6 +147,17 @@ impl Store {
 #[derive(Debug)]
 pub struct Reader<'connection> {
     connection: &'connection Connection,
+    call: &'connection Call,
+}
+
+impl Reader<'_> {
+    /// Whether the call may go on, for work that computes for long between two statements.
+    ///
+    /// # Errors
+    /// [`StoreError::Interrupted`] if nobody waits for it any more.
+    pub(crate) fn go_on(&self) -> Result<(), StoreError> {
+        self.call.go_on()
+    }
 }
 
 /// One state of the home, for as long as this is held. Its two statements stay prepared, which those of rusqlite's own
@@ -174,7 +190,6 @@ impl Drop for Moment<'_> {
 #[derive(Debug)]
 pub struct Writer<'connection> {
     reader: Reader<'connection>,
-    call: &'connection Call,
 }
 
 impl<'connection> Deref for Writer<'connection> {

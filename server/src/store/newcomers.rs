@@ -5,7 +5,7 @@ use coin::roster::UserIndex;
 use coin_schemas::household::{Owners, OwnershipBoolean, UserName};
 use jiff::civil::DateTime;
 
-use super::beliefs::{owners_of, text};
+use super::beliefs::{Belief, owners_of, text};
 use super::household::Household;
 use super::map::ObjectKey;
 use super::{Reader, StoreError, Writer};
@@ -117,7 +117,11 @@ impl Writer<'_> {
         )?;
         let mut rows = statement.query([serde_json::to_string(&everybody)?])?;
         while let Some(row) = rows.next()? {
-            reopened.push(ObjectKey(row.get(0)?));
+            let object = ObjectKey(row.get(0)?);
+            // What a person said of the thing stays settled, whatever a model concluded.
+            if !matches!(self.belief(object)?, Some(Belief::Answered { .. })) {
+                reopened.push(object);
+            }
         }
         reopened.sort_unstable();
         reopened.dedup();

@@ -15,10 +15,10 @@ impl Tool for AddUserTool {
     const NAME: &'static str = "add_user";
     const TITLE: &'static str = "Add a member of the household";
     const DESCRIPTION: &'static str = "Adds somebody who has joined the household, or changes the role or occupation \
-        of a member. What is believed of older things stays as it is: the newcomer is a candidate for things that \
-        this person has used, and for those that come later. Things that were everybody's are open again. Captions \
-        that name the newcomer and were recorded before count from now on. It also takes the first members of an \
-        empty home.";
+        of a member. What is believed of things that others have used stays as it is: the newcomer is a candidate \
+        for things that this person has used, for those that nobody has used, and for those that come later. Things \
+        that were everybody's are open again. Captions that name the newcomer and were recorded before count from now \
+        on. It also takes the first members of an empty home.";
     const EXAMPLE: &'static str = r#"{"name": "Ann", "role": "flatmate"}"#;
     const EFFECT: Effect = Effect::Records;
 

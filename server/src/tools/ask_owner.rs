@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use coin::dialogue::{Meaning, Reading, choices, meaning_of, read_answer};
-use coin_schemas::household::OwnershipBoolean;
+use coin_schemas::household::Owners;
 use coin_schemas::report::AnswerStatus;
 use coin_schemas::tools::{AskOutcome, AskOwner, AskOwnerResult};
 use jiff::Timestamp;
@@ -42,9 +42,14 @@ impl Tool for AskOwnerTool {
     type Output = AskOwnerResult;
 
     fn call(store: &Store, arguments: AskOwner) -> Result<AskOwnerResult, ToolError> {
-        match Self::converse(store, arguments, Person::OutOfReach)? {
-            Turn::Done(result) => Ok(result),
-            Turn::Ask(Form { state, .. }) => Err(unreachable(state)),
+        match &arguments.owner {
+            Some(words) => told(store, arguments.object_id.as_deref(), words),
+            None => match question(store, arguments.object_id.as_deref())? {
+                Turn::Done(result) => Ok(result),
+                Turn::Ask(Form { state: FormState { question, object_id, .. }, .. }) => {
+                    Err(ToolError::Unreachable { question, object_id: object_id.to_string() })
+                }
+            },
         }
     }
 
@@ -54,19 +59,11 @@ impl Tool for AskOwnerTool {
         person: Person,
     ) -> Result<Turn<AskOwnerResult>, ToolError> {
         match (&arguments.owner, person) {
-            (Some(words), _) => told(store, arguments.object_id.as_deref(), words).map(Turn::Done),
             (None, Person::Replied { state, reply }) => conclude(store, &state, reply).map(Turn::Done),
             (None, Person::WithinReach) => question(store, arguments.object_id.as_deref()),
-            (None, Person::OutOfReach) => match question(store, arguments.object_id.as_deref())? {
-                Turn::Ask(Form { state, .. }) => Err(unreachable(state)),
-                done @ Turn::Done(_) => Ok(done),
-            },
+            (Some(_), _) | (None, Person::OutOfReach) => Self::call(store, arguments).map(Turn::Done),
         }
     }
-}
-
-fn unreachable(state: FormState) -> ToolError {
-    ToolError::Unreachable { question: state.question, object_id: state.object_id.to_string() }
 }
 
 /// The thing in question: the one that is named, or the one that is most worth a question.
@@ -99,7 +96,7 @@ fn question(store: &Store, object_id: Option<&str>) -> Result<Turn<AskOwnerResul
         let likely = judgement.likely_sets().take(LIKELY_SETS);
         let choices = choices(roster, likely).into_iter().map(|choice| choice.words).collect();
         let expires_at = Timestamp::now().as_second().saturating_add(FORM_LIFETIME.as_secs().cast_signed());
-        let state = FormState::new(object.id, question.clone(), new_serial()?, expires_at);
+        let state = FormState::new(object.id, question.clone(), roster.len(), new_serial()?, expires_at);
         Ok(Turn::Ask(Form { message: question, choices, state }))
     })
 }
@@ -114,8 +111,14 @@ fn new_serial() -> Result<FormSerial, ToolError> {
 fn conclude(store: &Store, state: &FormState, reply: Reply) -> Result<AskOwnerResult, ToolError> {
     store.write(|writer| {
         let now = Timestamp::now().as_second();
+        if state.expires_at < now {
+            return Err(ToolError::StaleForm { reason: "has expired" });
+        }
         if writer.spend_form(state.serial(), state.expires_at, now)? == Spending::Repeated {
-            return Err(ToolError::SpentForm);
+            return Err(ToolError::StaleForm { reason: "has been answered before, and a form counts once" });
+        }
+        if fields::household(writer)?.roster().len() != state.members {
+            return Err(ToolError::StaleForm { reason: "was made before somebody joined the household" });
         }
         let object = fields::object(writer, state.object_id.as_str())?;
         let refusal = match reply {
@@ -164,23 +167,26 @@ fn read_form(
     }
 }
 
-/// Records what the person said in the chat.
+/// Records what the person said in the chat. It has to be said of which thing: another one may be the most worth a
+/// question by now.
 fn told(store: &Store, object_id: Option<&str>, words: &str) -> Result<AskOwnerResult, ToolError> {
     let words = fields::text("owner", words.trim())?;
+    let object_id = object_id.ok_or_else(|| {
+        ToolError::field(
+            "object_id",
+            "it is missing; with owner, give the id of the thing that was asked about",
+        )
+    })?;
     store.write(|writer| {
-        let (object, question, reading) = {
-            let scene = Scene::new(writer)?;
-            let Some((object, judgement)) = subject(&scene, object_id)? else {
-                return Ok(nothing_to_ask());
-            };
-            let question = match &judgement.basis {
-                // Whoever repeats what is believed answers the question that was answered before.
-                Basis::Answer(answer) if answer.answer == words => answer.question.clone(),
-                _ => scene.question(&object, &judgement)?,
-            };
-            let reading = read_answer(scene.household().roster(), &question, words, None);
-            (object, question, reading)
+        let scene = Scene::new(writer)?;
+        let object = fields::object(writer, object_id)?;
+        let judgement = scene.judge(&object, Moment::Present)?;
+        let question = match &judgement.basis {
+            // Whoever repeats what is believed answers the question that was answered before.
+            Basis::Answer(answer) if answer.answer == words => answer.question.clone(),
+            _ => scene.question(&object, &judgement)?,
         };
+        let reading = read_answer(scene.household().roster(), &question, words, None);
         record(writer, &object, &question, words.to_owned(), reading)
     })
 }
@@ -195,8 +201,6 @@ fn record(
     let household = fields::household(writer)?;
     let roster = household.roster();
     let Reading { owners, outside_household } = reading;
-    let ownership: OwnershipBoolean =
-        roster.indices().map(|user| (roster.name(user).clone(), owners.contains(user))).collect();
     let (status, outcome) = if reading.is_unresolved() {
         (AnswerStatus::Unresolved, AskOutcome::Unresolved)
     } else {
@@ -205,7 +209,7 @@ fn record(
     let recorded = RecordedAnswer {
         question: question.to_owned(),
         answer,
-        ownership,
+        ownership: roster.ownership(owners),
         owner_outside_household: outside_household,
         answered_by: None,
         at: Scene::new(writer)?.present()?,
@@ -243,7 +247,7 @@ fn without_answer(status: AskOutcome) -> AskOwnerResult {
         object: None,
         question: None,
         answer: None,
-        owners: coin_schemas::household::Owners::new(),
+        owners: Owners::new(),
         owner_outside_household: false,
         scores: None,
     }

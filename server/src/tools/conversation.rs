@@ -70,6 +70,8 @@ pub(crate) struct FormState {
     pub(crate) object_id: ObjectId,
     /// The question as the person reads it.
     pub(crate) question: String,
+    /// How many members the household had: "all of us" means them.
+    pub(crate) members: usize,
     /// The form's own number.
     serial: [u8; SERIAL_BYTES],
     /// When it stops to count, in seconds of UTC.
@@ -78,8 +80,14 @@ pub(crate) struct FormState {
 
 impl FormState {
     /// A new form's.
-    pub(crate) fn new(object_id: ObjectId, question: String, serial: FormSerial, expires_at: i64) -> Self {
-        Self { object_id, question, serial: serial.0, expires_at }
+    pub(crate) fn new(
+        object_id: ObjectId,
+        question: String,
+        members: usize,
+        serial: FormSerial,
+        expires_at: i64,
+    ) -> Self {
+        Self { object_id, question, members, serial: serial.0, expires_at }
     }
 
     /// The form's own number.

@@ -36,9 +36,12 @@ pub(crate) enum ToolError {
         /// The thing.
         object_id: String,
     },
-    /// A form came back that has counted before.
-    #[error("this form has been answered before, and a form counts once; call ask_owner again for a new one")]
-    SpentForm,
+    /// A form came back that does not count.
+    #[error("this form {reason}; call ask_owner again for a new one")]
+    StaleForm {
+        /// Why not.
+        reason: &'static str,
+    },
     /// The operating system gives no random numbers.
     #[error("no form can be made, because the operating system gives no random numbers: {reason}")]
     NoRandomness {

@@ -47,7 +47,7 @@ pub(super) fn unknown_object(reader: &Reader<'_>, id: &str) -> Result<String, St
 
 /// The members of the household.
 pub(super) fn household(reader: &Reader<'_>) -> Result<Household, ToolError> {
-    reader.household()?.ok_or_else(|| StoreError::from(coin::roster::RosterError::NoUsers).into())
+    Ok(reader.household()?.ok_or(StoreError::NobodyLivesHere)?)
 }
 
 /// The member of this name.

@@ -52,7 +52,7 @@ pub(crate) enum Effect {
 /// How long a tool keeps a thread busy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Effort {
-    /// Well under a millisecond: it looks at one thing.
+    /// Well under a millisecond for a thing with a thousand events: it looks at one thing, or at the people.
     Brief,
     /// Longer: it looks at many things, or waits until what it writes is on the disk.
     Long,

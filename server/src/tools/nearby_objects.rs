@@ -4,7 +4,7 @@ use coin::space::Neighbourhood;
 use coin_schemas::tools::{MAX_K, NearbyObjects, NearbyObjectsResult};
 
 use super::fields;
-use super::{Effect, Effort, Tool, ToolError};
+use super::{Effect, Tool, ToolError};
 use crate::scene::Scene;
 use crate::store::Store;
 
@@ -23,7 +23,6 @@ impl Tool for NearbyObjectsTool {
         (get_usage_summary). The defaults suit a home.";
     const EXAMPLE: &'static str = r#"{"object_id": "3", "k": 5}"#;
     const EFFECT: Effect = Effect::Reads;
-    const EFFORT: Effort = Effort::Brief;
 
     type Arguments = NearbyObjects;
     type Output = NearbyObjectsResult;

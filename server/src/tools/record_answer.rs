@@ -1,7 +1,6 @@
 //! `record_answer`: what a person said about the owner of a thing.
 
 use coin::owners::OwnerSet;
-use coin_schemas::household::OwnershipBoolean;
 use coin_schemas::report::AnswerStatus;
 use coin_schemas::tools::{RecordAnswer, RecordAnswerResult};
 use jiff::civil::DateTime;
@@ -83,8 +82,6 @@ fn read_answer(
         .as_deref()
         .map(|name| fields::user(household, "answered_by", name).map(|user| roster.name(user).clone()))
         .transpose()?;
-    let ownership: OwnershipBoolean =
-        roster.indices().map(|user| (roster.name(user).clone(), owners.contains(user))).collect();
     let status = if owners.is_empty() && !arguments.owner_outside_household {
         AnswerStatus::Unresolved
     } else {
@@ -93,7 +90,7 @@ fn read_answer(
     let answer = RecordedAnswer {
         question: arguments.question.clone(),
         answer: arguments.answer.clone(),
-        ownership,
+        ownership: roster.ownership(owners),
         owner_outside_household: arguments.owner_outside_household,
         answered_by,
         at,

@@ -46,7 +46,13 @@ impl Tool for RecordUsageTool {
         // Reading the captions takes longer than storing them, so it is done while nobody has to wait.
         let (records, rejected) = read_captions(captions, &household, &objects, store.call())?;
         let counts = store.write(|writer| {
-            let counts = writer.record_usage(&household, &records)?;
+            let present = fields::household(writer)?;
+            // Somebody may have joined meanwhile, and be named in the captions.
+            let again = (present != household)
+                .then(|| read_captions(captions, &present, &objects, store.call()))
+                .transpose()?;
+            let records = again.map_or(records, |(records, _)| records);
+            let counts = writer.record_usage(&present, &records)?;
             // A camera whose clock is wrong must not carry the home's present into the future with it.
             let plausible = fields::tomorrow();
             let past = records.iter().map(|record| record.observation.at).filter(|&at| at <= plausible);

@@ -111,6 +111,11 @@ impl Entry {
         self.effort == Effort::Brief
     }
 
+    /// Whether the tool may have a person fill in a form.
+    pub(crate) fn asks(&self) -> bool {
+        self.effect == Effect::Asks
+    }
+
     /// Runs the tool.
     pub(crate) fn call(
         &self,
@@ -176,6 +181,11 @@ impl Registry {
     /// The tool of this name.
     pub(crate) fn get(&self, name: &str) -> Option<&Entry> {
         self.entries.get(name)
+    }
+
+    /// Whether all of these tools are offered.
+    pub(crate) fn offers(&self, names: &[&str]) -> bool {
+        names.iter().all(|name| self.entries.contains_key(name))
     }
 
     /// The definitions by name.

@@ -92,6 +92,43 @@ async fn a_form_that_was_altered_or_belongs_elsewhere_or_has_counted_is_refused(
 }
 
 #[tokio::test]
+async fn a_state_where_no_form_was_ever_made_is_refused_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("home.db");
+    let store = Store::open(&path, Access::ReadWrite).unwrap();
+    store.import(&test_home::episode()).unwrap();
+    let mut client = Client::start_on(store);
+    let request =
+        again(&call(&json!({"object_id": "sofa"})), &json!({"requestState": "rs1.x.y"}), &accepted("Bob"));
+    let answer = client.request("tools/call", request).await;
+    assert_eq!(answer["error"]["code"], -32602, "{answer}");
+    let looking = Store::open(&path, Access::ReadOnly).unwrap();
+    let key = looking.read(|reader| Ok::<_, crate::store::StoreError>(reader.form_key()?.is_some())).unwrap();
+    assert!(!key, "looking at a state makes no key");
+    let mut unasked = json!({"name": "list_users", "requestState": "rs1.x.y", "_meta": meta(&json!({}))});
+    unasked["arguments"] = json!({});
+    let result = client.request("tools/call", unasked).await["result"].take();
+    assert_eq!(result["isError"], false, "a tool that asks nobody does not mind: {result}");
+}
+
+#[tokio::test]
+async fn an_older_client_that_gives_up_ends_its_form() {
+    let mut client = Client::with_capabilities(json!({"elicitation": {}})).await;
+    let params = json!({"name": "ask_owner", "arguments": {"object_id": "sofa"}});
+    client.send(json!({"jsonrpc": "2.0", "id": 50, "method": "tools/call", "params": params})).await;
+    let asked = client.next_message().await;
+    assert_eq!(asked["method"], "elicitation/create");
+    client
+        .send(json!({"jsonrpc": "2.0", "method": "notifications/cancelled", "params": {"requestId": 50}}))
+        .await;
+    let told = client.call("whose_is", json!({"object_id": "sofa"})).await;
+    assert_eq!(told["result"]["structuredContent"]["source"], "inferred");
+    client.send(json!({"jsonrpc": "2.0", "id": asked["id"], "result": accepted("Bob")})).await;
+    let told = client.call("whose_is", json!({"object_id": "sofa"})).await;
+    assert_eq!(told["result"]["structuredContent"]["source"], "inferred", "nobody waits for the answer");
+}
+
+#[tokio::test]
 async fn a_form_that_comes_back_empty_is_shown_again() {
     let mut client = Client::start();
     let first = call(&json!({"object_id": "sofa"}));

@@ -142,6 +142,47 @@ async fn prompts_name_their_arguments() {
     insta::assert_json_snapshot!(listed);
 }
 
+/// Every word of what a client is told that looks like the name of a tool.
+fn tools_named(text: &str) -> Vec<String> {
+    let words = text.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
+    let all = Registry::new(&ToolSelection::all(), Access::ReadWrite);
+    words.filter(|word| all.get(word).is_some()).map(str::to_owned).collect()
+}
+
+#[rstest]
+#[case("all", Access::ReadWrite)]
+#[case("all", Access::ReadOnly)]
+#[case("core", Access::ReadWrite)]
+#[case("list_users", Access::ReadWrite)]
+#[tokio::test]
+async fn no_client_is_told_to_call_what_is_not_offered(#[case] selection: &str, #[case] access: Access) {
+    let selection: ToolSelection = selection.parse().unwrap();
+    let offered: Vec<String> = Registry::new(&selection, access)
+        .definitions()
+        .into_iter()
+        .map(|tool| tool.name.into_owned())
+        .collect();
+    let mut client = Client::start_with(test_home::store(), Registry::new(&selection, access));
+    let hello = json!({"protocolVersion": "2025-11-25", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}});
+    let said = client.request("initialize", hello).await["result"]["instructions"].take();
+    client.send(json!({"jsonrpc": "2.0", "method": "notifications/initialized"})).await;
+    let mut texts = vec![said.as_str().unwrap().to_owned()];
+    assert!(texts[0].starts_with("COIN knows"), "{}", texts[0]);
+    let prompts = client.request("prompts/list", json!({})).await["result"]["prompts"].take();
+    for prompt in prompts.as_array().unwrap() {
+        let arguments = json!({"object_id": "1", "question": "Whose?", "answer": "Bob's."});
+        let got =
+            client.request("prompts/get", json!({"name": prompt["name"], "arguments": arguments})).await;
+        texts.push(got["result"]["messages"][0]["content"]["text"].as_str().unwrap().to_owned());
+    }
+    for tool in texts.iter().flat_map(|text| tools_named(text)) {
+        assert!(offered.contains(&tool), "{tool} is not offered: {texts:?}");
+    }
+    if offered.len() == 13 {
+        assert_eq!(texts.len(), 5, "all prompts are listed where all tools are offered");
+    }
+}
+
 #[rstest]
 #[case("infer_ownership", json!({"object_id": "1"}))]
 #[case("ask_question", json!({"object_id": "1"}))]

@@ -83,8 +83,14 @@ impl Client {
 
     /// The same for another home.
     fn start_on(store: Store) -> Self {
-        let tools =
-            Registry::new(&ToolSelection::all(), Access::ReadWrite).with::<Panics>().with::<Endless>();
+        Self::start_with(
+            store,
+            Registry::new(&ToolSelection::all(), Access::ReadWrite).with::<Panics>().with::<Endless>(),
+        )
+    }
+
+    /// The same with other tools.
+    fn start_with(store: Store, tools: Registry) -> Self {
         let service = CoinService::new(Arc::new(store), tools);
         let (ours, theirs) = tokio::io::duplex(1 << 20);
         tokio::spawn(

@@ -54,6 +54,15 @@ async fn parameters_that_do_not_fit_are_invalid_and_not_unknown() {
         let answer = client.request("tools/call", params).await;
         assert_eq!(answer["error"]["code"], -32602, "{answer}");
     }
+    for (method, params) in [
+        ("resources/read", json!({})),
+        ("prompts/get", json!({"name": 1})),
+        ("completion/complete", json!({})),
+    ] {
+        let answer = client.request(method, params).await;
+        assert_eq!(answer["error"]["code"], -32602, "{method}: {answer}");
+        assert!(answer["error"]["message"].as_str().unwrap().starts_with(method), "{answer}");
+    }
     let answer = client.request("tools/forget", json!({})).await;
     assert_eq!(answer["error"]["code"], -32601, "{answer}");
 }

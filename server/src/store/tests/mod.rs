@@ -273,6 +273,42 @@ mod import {
         assert_eq!(contents(&continued), contents(&whole));
     }
 
+    /// People are told by their place among all, which moves when somebody joins whose name comes first.
+    #[test]
+    fn a_longer_take_is_added_to_a_home_that_somebody_has_joined() {
+        let mut beginning = episode();
+        beginning.captions.truncate(3);
+        beginning.observations.truncate(3);
+        let store = Store::open_in_memory().unwrap();
+        store.import(&beginning).unwrap();
+        let ann = UserName::new("Ann").unwrap();
+        let cook = Background { role: None, occupation: Some("cook".to_owned()) };
+        store.write(|writer| writer.put_user(&ann, &cook)).unwrap();
+        store.write(|writer| writer.put_user(&bob(), &cook)).unwrap();
+        store.import(&episode()).unwrap();
+        let whole = Store::open_in_memory().unwrap();
+        whole.import(&episode()).unwrap();
+        assert_eq!(actors(&store), actors(&whole));
+    }
+
+    /// Who did what is written down, by name.
+    fn actors(store: &Store) -> Vec<(String, Option<String>)> {
+        store
+            .read(|reader| {
+                let household = reader.household()?.unwrap();
+                let mut actors = Vec::new();
+                for object in reader.objects()? {
+                    let log = reader.usage(&household, object.key, i64::MIN, i64::MAX)?;
+                    for (place, event) in log.events.iter().enumerate() {
+                        let actor = event.actor.map(|user| household.roster().name(user).to_string());
+                        actors.push((log.caption(place).to_owned(), actor));
+                    }
+                }
+                Ok::<_, StoreError>(actors)
+            })
+            .unwrap()
+    }
+
     #[test]
     fn another_home_is_refused_and_the_first_one_kept() {
         type Change = fn(&mut crate::episode::LoadedEpisode);

@@ -73,11 +73,13 @@ fn more_readers_than_connections_are_all_served() {
     thread::scope(|scope| {
         for _ in 0..40 {
             scope.spawn(|| {
-                store.read(|reader| {
-                    thread::sleep(Duration::from_millis(5));
-                    assert!(reader.household()?.is_some());
-                    Ok::<_, StoreError>(())
-                })
+                store
+                    .read(|reader| {
+                        thread::sleep(Duration::from_millis(5));
+                        assert!(reader.household()?.is_some());
+                        Ok::<_, StoreError>(())
+                    })
+                    .unwrap();
             });
         }
     });

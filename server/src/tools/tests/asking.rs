@@ -111,7 +111,7 @@ fn a_form_counts_once() {
     let form = form(&store, json!({"object_id": "sofa"}));
     bring_back(&store, &form, filled(json!({"owner": "Bob"}))).unwrap();
     let error = bring_back(&store, &form, filled(json!({"owner": "Mary"}))).unwrap_err();
-    assert!(matches!(error, ToolError::SpentForm), "{error}");
+    assert!(matches!(error, ToolError::StaleForm { .. }), "{error}");
     assert_eq!(whose(&store, "sofa")["owners"], json!(["Bob"]));
 }
 
@@ -184,5 +184,34 @@ fn a_home_in_which_all_is_settled_has_nothing_to_ask() {
     }
     let Turn::Done(result) = ask(&store, json!({}), Person::WithinReach).unwrap() else { panic!("asked") };
     assert_eq!(result["status"], "nothing_to_ask");
-    assert_eq!(done(&store, "ask_owner", json!({"owner": "Bob"}))["status"], "nothing_to_ask");
+}
+
+#[test]
+fn what_was_said_is_said_of_a_thing() {
+    let store = test_home::store();
+    let message = refused(&store, "ask_owner", json!({"owner": "Bob's"}));
+    assert!(message.starts_with("object_id: it is missing"), "{message}");
+    let message = refused(&store, "ask_owner", json!({"owner": "Bob's", "object_id": "mug"}));
+    assert!(message.starts_with("object_id: there is no object"), "{message}");
+    assert_eq!(done(&store, "next_question", json!({}))["unsettled"], 5);
+}
+
+#[test]
+fn a_form_that_lay_open_for_too_long_does_not_count() {
+    let store = test_home::store();
+    let mut form = form(&store, json!({"object_id": "sofa"}));
+    form.state.expires_at -= 2 * i64::try_from(crate::tools::FORM_LIFETIME.as_secs()).unwrap();
+    let error = bring_back(&store, &form, filled(json!({"owner": "Bob"}))).unwrap_err().to_string();
+    assert!(error.contains("has expired"), "{error}");
+    assert_eq!(whose(&store, "sofa")["source"], "inferred");
+}
+
+#[test]
+fn all_of_us_means_those_who_were_asked() {
+    let store = test_home::store();
+    let form = form(&store, json!({"object_id": "sofa"}));
+    done(&store, "add_user", json!({"name": "Ann"}));
+    let error = bring_back(&store, &form, filled(json!({"owner": "all of us"}))).unwrap_err().to_string();
+    assert!(error.contains("before somebody joined"), "{error}");
+    assert_eq!(whose(&store, "sofa")["source"], "inferred");
 }

@@ -97,6 +97,17 @@ fn a_models_word_that_a_thing_is_everybodys_is_open_again() {
 }
 
 #[test]
+fn what_a_person_said_is_not_opened_by_what_a_model_said_before() {
+    let store = test_home::store();
+    let sets = json!([{"owners": ["Bob", "Mary", "Tom"], "probability": 1.0}]);
+    let scores = json!({"Bob": 1.0, "Mary": 1.0, "Tom": 1.0});
+    done(&store, "record_scores", json!({"object_id": "sofa", "scores": scores, "owner_sets": sets}));
+    done(&store, "record_answer", answer("sofa", "Bob's", &json!({"Bob": true})));
+    assert_eq!(done(&store, "add_user", json!({"name": "Ann"}))["reopened"], json!([]));
+    assert_eq!(whose(&store, "sofa")["settled"], true);
+}
+
+#[test]
 fn an_empty_home_takes_its_first_members() {
     let store = Store::open_in_memory().unwrap();
     done(&store, "add_user", json!({"name": "Bob"}));

@@ -33,7 +33,7 @@ pub(super) struct Callers {
 
 impl Callers {
     pub(super) fn new(allowed_hosts: &[String]) -> Self {
-        Self { allowed_hosts: allowed_hosts.iter().map(|host| host.to_ascii_lowercase()).collect() }
+        Self { allowed_hosts: allowed_hosts.iter().map(|host| bare(host)).collect() }
     }
 
     /// Whether a request may pass, or what is wrong with it.
@@ -56,12 +56,17 @@ impl Callers {
     }
 
     fn is_ours(&self, name: &str, here: IpAddr) -> bool {
-        let name = name.trim_start_matches('[').trim_end_matches(']').to_ascii_lowercase();
+        let name = bare(name);
         match name.parse::<IpAddr>() {
             Ok(address) if address.is_loopback() || address == here.to_canonical() => true,
             _ => name == "localhost" || self.allowed_hosts.contains(&name),
         }
     }
+}
+
+/// A host name as it is compared: in small letters, and without the brackets of an address of version 6.
+fn bare(name: &str) -> String {
+    name.trim_start_matches('[').trim_end_matches(']').to_ascii_lowercase()
 }
 
 /// The one value of a header, if it is there.
@@ -83,10 +88,7 @@ pub(super) async fn refuse_strangers(
 ) -> Response {
     match callers.check(request.headers(), ends.here.ip()) {
         Ok(()) => next.run(request).await,
-        Err(reason) => {
-            tracing::debug!(from = %ends.there.ip(), reason, "a request was turned away");
-            refused(StatusCode::FORBIDDEN, reason)
-        }
+        Err(reason) => refused(StatusCode::FORBIDDEN, reason),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::future::ready;
 use std::net::IpAddr;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use axum::Extension;
 use axum::body::Body;
@@ -63,22 +63,51 @@ pub(super) async fn limit_rate(
     }
 }
 
-/// Reads the body before anything is judged, since most clients listen only after they have sent everything. Who
-/// sends byte by byte keeps nobody else waiting.
-pub(super) async fn read_body(State(load): State<Arc<Load>>, request: Request, next: Next) -> Response {
+/// The body of a request, until somebody reads it.
+#[derive(Clone, Default)]
+pub(super) struct Unread(Arc<Mutex<Option<Body>>>);
+
+impl Unread {
+    fn take(&self) -> Option<Body> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+/// Hears a request that is turned away to its end, since most clients listen only after they have sent everything. What
+/// they send is thrown away.
+pub(super) async fn hear_out(State(load): State<Arc<Load>>, request: Request, next: Next) -> Response {
+    let (mut parts, body) = request.into_parts();
+    let unread = Unread(Arc::new(Mutex::new(Some(body))));
+    parts.extensions.insert(unread.clone());
+    let response = next.run(Request::from_parts(parts, Body::empty())).await;
+    if let Some(body) = unread.take() {
+        // The answer is there already; who sends too slowly to hear it is not waited for.
+        timeout(load.limits.body, body.into_data_stream().for_each(|_| ready(()))).await.ok();
+    }
+    response
+}
+
+/// Reads the body of a request that may pass.
+pub(super) async fn read_body(
+    State(load): State<Arc<Load>>,
+    Extension(unread): Extension<Unread>,
+    request: Request,
+    next: Next,
+) -> Response {
     let Limits { body: patience, body_bytes, .. } = load.limits;
-    let (parts, body) = request.into_parts();
+    let parts = request.into_parts().0;
+    let body = unread.take().unwrap_or_default();
     match timeout(patience, read(body, body_bytes, &load.memory)).await {
         Ok(Ok((bytes, _held))) => next.run(Request::from_parts(parts, Body::from(bytes))).await,
-        Ok(Err(Unread::TooLong)) => refused(
+        Ok(Err(Unusable::TooLong)) => refused(
             StatusCode::PAYLOAD_TOO_LARGE,
             &format!("A request may have {body_bytes} bytes; send less at once."),
         ),
-        Ok(Err(Unread::NoMemory)) => refused_for_now(
+        Ok(Err(Unusable::NoMemory)) => refused_for_now(
             StatusCode::SERVICE_UNAVAILABLE,
             "Too much is being sent at once; try again in a moment.",
         ),
-        Ok(Err(Unread::Broken)) => refused(StatusCode::BAD_REQUEST, "The body of the request broke off."),
+        Ok(Err(Unusable::Broken)) => refused(StatusCode::BAD_REQUEST, "The body of the request broke off."),
         Err(_) => refused(
             StatusCode::REQUEST_TIMEOUT,
             &format!("The body of a request must be there within {} seconds.", patience.as_secs()),
@@ -87,7 +116,7 @@ pub(super) async fn read_body(State(load): State<Arc<Load>>, request: Request, n
 }
 
 /// Why there is no body.
-enum Unread {
+enum Unusable {
     TooLong,
     NoMemory,
     Broken,
@@ -98,17 +127,18 @@ async fn read(
     body: Body,
     limit: usize,
     memory: &Semaphore,
-) -> Result<(Vec<u8>, SemaphorePermit<'_>), Unread> {
-    let no_memory = |_| Unread::NoMemory;
+) -> Result<(Vec<u8>, SemaphorePermit<'_>), Unusable> {
+    let no_memory = |_| Unusable::NoMemory;
     let mut pieces = body.into_data_stream();
     let mut read = Vec::new();
     let mut held = memory.try_acquire_many(0).map_err(no_memory)?;
     while let Some(piece) = pieces.next().await {
-        let piece = piece.map_err(|_| Unread::Broken)?;
+        let piece = piece.map_err(|_| Unusable::Broken)?;
         if read.len() + piece.len() > limit {
-            // It is heard to its end all the same, for the same reason.
+            // It is heard to its end all the same, but nothing of it is kept.
+            drop((read, held));
             pieces.for_each(|_| ready(())).await;
-            return Err(Unread::TooLong);
+            return Err(Unusable::TooLong);
         }
         let more = u32::try_from(piece.len()).unwrap_or(u32::MAX);
         held.merge(memory.try_acquire_many(more).map_err(no_memory)?);

@@ -1,8 +1,8 @@
 //! Streamable HTTP: one MCP endpoint that many clients use at once, and that a hostile one cannot stop.
 //!
-//! A request passes, from the outside in: `connections` (how many, and how slowly they may send), `load` (how much
-//! they may send), `callers` (who may be behind a browser), `load` (how often), `token` (who may ask at all), `load`
-//! (how many at once), and only then rmcp's service, which speaks the protocol. Nothing here knows which tools are
+//! A request passes, from the outside in: `connections` (how many, and how slowly they may send), `callers` (who may
+//! be behind a browser), `load` (how often), `token` (who may ask at all), `load` (how much they may send, and how
+//! many at once), and only then rmcp's service, which speaks the protocol. Nothing here knows which tools are
 //! served, and what any client can cause is logged at the level `debug` at most, so that a flood of requests is no
 //! flood of messages.
 
@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use axum::Router;
 use axum::http::StatusCode;
-use axum::http::header::RETRY_AFTER;
+use axum::http::header::{RETRY_AFTER, WWW_AUTHENTICATE};
 use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
@@ -131,20 +131,36 @@ fn router<S: ServerHandler + Clone>(
         .route_service(ENDPOINT, protocol)
         .layer(from_fn_with_state(shutdown.clone(), connections::end_listening_streams))
         .layer(from_fn_with_state(Arc::clone(&load), load::take_turns))
+        .layer(from_fn_with_state(Arc::clone(&load), load::read_body))
         .layer(from_fn_with_state(options.token.clone(), token::require))
         .route(HEALTH, get(async || "ok\n"))
         .fallback(async || refused(StatusCode::NOT_FOUND, "There is nothing here; MCP is spoken at /mcp."))
         .layer(from_fn_with_state(Arc::clone(&load), load::limit_rate))
         .layer(from_fn_with_state(callers, callers::refuse_strangers))
-        .layer(from_fn_with_state(load, load::read_body))
+        .layer(from_fn_with_state(load, load::hear_out))
 }
 
 /// The answer to a request that does not reach the protocol: words for the person who looks for the reason.
 fn refused(status: StatusCode, reason: &str) -> Response {
+    note(status, reason);
     (status, format!("{reason}\n")).into_response()
 }
 
 /// The answer to a request that may be sent again after a second.
 fn refused_for_now(status: StatusCode, reason: &str) -> Response {
+    note(status, reason);
     (status, [(RETRY_AFTER, "1")], format!("{reason}\n")).into_response()
+}
+
+/// The answer to a request without the token.
+fn refused_without_token() -> Response {
+    let (status, reason) =
+        (StatusCode::UNAUTHORIZED, "This server wants its token: Authorization: Bearer TOKEN.");
+    note(status, reason);
+    (status, [(WWW_AUTHENTICATE, "Bearer")], format!("{reason}\n")).into_response()
+}
+
+/// A flood of requests must be no flood of messages.
+fn note(status: StatusCode, reason: &str) {
+    tracing::debug!(status = status.as_u16(), reason, "a request was turned away");
 }

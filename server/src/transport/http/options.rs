@@ -38,13 +38,13 @@ pub struct Limits {
     pub body: Duration,
     /// The size of a body.
     pub body_bytes: usize,
-    /// The size of all bodies that are being read or worked on.
+    /// The size of all bodies that are being read, or worked on until their answer begins.
     pub bodies_bytes: usize,
     /// How long a client may read nothing while an answer waits for it.
     pub write: Duration,
     /// Requests from one address in a second.
     pub requests_per_second: NonZeroU32,
-    /// Requests that are worked on at once. Those that wait for the disk count, so that a low number would have readers
+    /// Requests that are worked on at once, until their answer begins. Those that wait for the disk count, so that a low number would have readers
     /// wait for writers.
     pub requests_at_once: usize,
     /// How long a request waits for its turn.

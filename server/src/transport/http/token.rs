@@ -6,12 +6,14 @@ use std::sync::Arc;
 use std::{fs, io};
 
 use axum::extract::{Request, State};
-use axum::http::header::{AUTHORIZATION, WWW_AUTHENTICATE};
-use axum::http::{HeaderMap, StatusCode};
+use axum::http::HeaderMap;
+use axum::http::header::AUTHORIZATION;
 use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use subtle::ConstantTimeEq;
 use thiserror::Error;
+
+use super::refused_without_token;
 
 /// The scheme of `Authorization`, whose case does not matter.
 const SCHEME: &str = "bearer";
@@ -105,8 +107,7 @@ pub(super) async fn require(State(token): State<Option<Token>>, request: Request
     if token.is_none_or(|token| token.is_shown_by(request.headers())) {
         return next.run(request).await;
     }
-    let reason = "This server wants its token: Authorization: Bearer TOKEN.\n";
-    (StatusCode::UNAUTHORIZED, [(WWW_AUTHENTICATE, "Bearer")], reason).into_response()
+    refused_without_token()
 }
 
 #[cfg(test)]
