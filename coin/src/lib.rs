@@ -14,6 +14,7 @@ pub mod conformal;
 pub mod dialogue;
 pub mod evidence;
 pub mod gate;
+mod language;
 pub mod metrics;
 pub mod owners;
 pub mod roster;
