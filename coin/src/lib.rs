@@ -17,6 +17,7 @@ pub mod gate;
 mod language;
 pub mod metrics;
 pub mod owners;
+pub mod referring;
 pub mod roster;
 pub mod sharing;
 pub mod similarity;
