@@ -1,11 +1,12 @@
 //! Reads a request: which words are the thing's, whose it is said to be, and where.
 
+use super::labels::words_of;
 use super::ownership::OwnerReference;
 use super::phrases::{LONGEST_PHRASE, Mark, mark};
 use crate::language::contractions::{Token, longest, tokens};
 use crate::language::parties::{Finder, Found, Party, Speech};
 use crate::language::people::People;
-use crate::language::words::{Word, Words};
+use crate::language::words::{Gap, Word, Words};
 use crate::owners::OwnerSet;
 use crate::roster::{Roster, UserIndex};
 
@@ -32,13 +33,26 @@ pub enum Relation {
 pub struct NounPhrase {
     /// The words of the thing in lower case and singular: class and properties. Empty where the request names none.
     pub class: Vec<String>,
+    /// The same words as they were said, in lower case.
+    pub said: String,
     /// Whose it is said to be.
     pub owner: OwnerReference,
 }
 
 impl Default for NounPhrase {
     fn default() -> Self {
-        Self { class: Vec::new(), owner: OwnerReference::Anybody }
+        Self { class: Vec::new(), said: String::new(), owner: OwnerReference::Anybody }
+    }
+}
+
+impl NounPhrase {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn finish(&mut self) {
+        self.said = self.class.join(" ");
+        self.class = words_of(&self.said);
     }
 }
 
@@ -47,7 +61,10 @@ impl Default for NounPhrase {
 pub struct Hint {
     /// How the place is named.
     pub relation: Relation,
-    /// The room or the other thing.
+    /// All words for the place in lower case and singular: the name of a room may hold a possessor ("the children's
+    /// room").
+    pub place: Vec<String>,
+    /// The same words as another thing and its owner.
     pub anchor: NounPhrase,
 }
 
@@ -135,6 +152,9 @@ impl Reader<'_> {
         while at < self.tokens.len() {
             if let Some((owner, next)) = self.possessor(at) {
                 self.set_owner(owner);
+                if let Some(hint) = self.meaning.hints.last_mut() {
+                    hint.place.extend(self.tokens[at..next].iter().map(|token| token.text.clone()));
+                }
                 at = next;
                 continue;
             }
@@ -151,6 +171,12 @@ impl Reader<'_> {
                 && is_somebody(found.party)
                 && !matches!(self.tokens[at].text.as_str(), "i" | "me" | "myself" | "we" | "us")
             {
+                // "the book that Mary owns"
+                if let Some(length) = self.owns(found.next) {
+                    self.set_owner(self.reference(found));
+                    at = found.next + length;
+                    continue;
+                }
                 if let Party::Members(members) = found.party
                     && members.len() == 1
                 {
@@ -160,8 +186,8 @@ impl Reader<'_> {
                 continue;
             }
             match mark {
-                // What is behind a destination is said of it.
-                Some(Mark::Destination) => break,
+                // What is behind a destination is said of it; before the thing, "to" belongs to a verb.
+                Some(Mark::Destination) if !self.meaning.thing.is_empty() => break,
                 Some(Mark::Place(_)) if self.putting => break,
                 Some(Mark::Of) => {
                     if let Some((owner, next)) = self.owner_behind(at + length) {
@@ -176,9 +202,19 @@ impl Reader<'_> {
                 Some(Mark::Put) => self.putting = true,
                 Some(Mark::Whose) => self.meaning.purpose = Purpose::Owner,
                 Some(Mark::Place(relation)) => {
-                    self.meaning.hints.push(Hint { relation, anchor: NounPhrase::default() });
+                    self.meaning.hints.push(Hint {
+                        relation,
+                        place: Vec::new(),
+                        anchor: NounPhrase::default(),
+                    });
                 }
-                Some(Mark::Frame | Mark::And) => {}
+                Some(Mark::Not) => {
+                    if let Some((_, next)) = self.owner_behind(at + length) {
+                        at = next;
+                        continue;
+                    }
+                }
+                Some(Mark::Frame | Mark::And | Mark::Own | Mark::Destination) => {}
                 None => {
                     let word = self.tokens[at].text.clone();
                     self.push(&word);
@@ -186,11 +222,19 @@ impl Reader<'_> {
             }
             at += length;
         }
-        for phrase in self.meaning.hints.iter_mut().map(|hint| &mut hint.anchor) {
-            phrase.class = super::labels::words_of(&phrase.class.join(" "));
+        for hint in &mut self.meaning.hints {
+            hint.place = words_of(&hint.place.join(" "));
+            hint.anchor.finish();
         }
-        self.meaning.thing.class = super::labels::words_of(&self.meaning.thing.class.join(" "));
         self.meaning.hints.retain(|hint| !hint.anchor.class.is_empty());
+        self.meaning.thing.finish();
+    }
+
+    /// The number of words that make the person before them the owner.
+    fn owns(&self, at: usize) -> Option<usize> {
+        let rest = self.tokens.get(at..)?;
+        let (mark, length) = longest(rest, LONGEST_PHRASE, |phrase, _| mark(phrase))?;
+        (mark == Mark::Own && !self.meaning.thing.class.is_empty()).then_some(length)
     }
 
     /// The phrase that is being read: the last place, or the thing.
@@ -202,6 +246,9 @@ impl Reader<'_> {
     }
 
     fn push(&mut self, word: &str) {
+        if let Some(hint) = self.meaning.hints.last_mut() {
+            hint.place.push(word.to_owned());
+        }
         self.phrase().class.push(word.to_owned());
     }
 
@@ -248,8 +295,7 @@ impl Reader<'_> {
         if mark(&token.text) == Some(Mark::And) {
             return Some(at + 1);
         }
-        matches!(token.gap, crate::language::words::Gap::Comma | crate::language::words::Gap::Ampersand)
-            .then_some(at)
+        matches!(token.gap, Gap::Comma | Gap::Ampersand).then_some(at)
     }
 
     fn owner(&self, at: usize) -> Option<(OwnerReference, usize, bool)> {

@@ -64,7 +64,13 @@ pub(super) fn joined(words: &[String]) -> String {
 /// * a detail that only one side has and that makes another kind of thing ("car" keys): one step;
 /// * a property that the label does not tell ("red"): two steps, so that a label that tells it comes first even where
 ///   its noun is another; a contradicted one excludes the thing, and so do details that name different kinds.
+///
+/// Words that are properties only ("the red one") fit the labels that tell them.
 pub(super) fn fit(words: &[String], label: &[String]) -> Fit {
+    if !words.is_empty() && words.iter().all(|word| group(word).is_some()) {
+        let told = if words.iter().all(|word| label.contains(word)) { 1.0 } else { 0.0 };
+        return Fit { noun: told, whole: told };
+    }
     let mut best = Fit { noun: 0.0, whole: 0.0 };
     for asked in 1..=words.len().min(LONGEST_NOUN) {
         let (asked_details, asked_noun) = words.split_at(words.len() - asked);
@@ -157,6 +163,8 @@ mod tests {
     #[case::an_untold_property("red mug", "mug", 0.64)]
     #[case::a_contradicted_property("red mug", "blue mug", 0.0)]
     #[case::spectacles_are_no_glass("glasses", "glass", 0.0)]
+    #[case::a_property_alone("red", "red mug", 1.0)]
+    #[case::a_property_alone_untold("red", "mug", 0.0)]
     #[case::nothing_alike("violin", "mug", 0.0)]
     fn words_fit_labels(#[case] words: &str, #[case] label: &str, #[case] expected: f64) {
         let fit = fit(&words_of(words), &words_of(label));

@@ -19,6 +19,10 @@ pub(super) enum Mark {
     Destination,
     /// An owner follows, or a part of the name.
     Of,
+    /// What follows is not meant.
+    Not,
+    /// Behind a person: the thing is this person's.
+    Own,
     /// Joins two owners.
     And,
     /// A place follows.
@@ -34,15 +38,18 @@ const PHRASES: &[(Mark, &str)] = &[
          looking, look for, looking for, search for, searching for, where, where is, where are, did, do, does, am, \
          are, is, was, were, be, leave, left, lost, lose, forgot, hey, hi, hello, robot, coin, ok, okay, thanks, \
          thank you, thank, the, a, an, some, any, mind, tell, know, there, here, this, that, these, those, it, one, \
-         ones, own, again, now, quickly, quick, kindly, just, so, with, over, back, thing, things, stuff, something, \
+         ones, again, now, quickly, quick, kindly, just, so, with, over, back, thing, things, stuff, something, \
          anything, for me, for us, over here, over there, right now, at once, if you can, anywhere, somewhere, which, \
-         what, not, called, try, let's, let, see, ever, possible, if, when, time, not, may, might, must, should",
+         what, called, try, let's, let, see, ever, possible, if, when, time, may, might, must, should, read, use, wear, play, play with, drink, drink from, write with, eat, wash, \
+         charge, borrow, open, lying, standing, hanging, sitting, kept, pair of, pairs of, set of, bunch of, who",
     ),
     (
         Mark::Whose,
         "whose, who owns, who own, who does, who do, who is the owner of, who is the owner, to whom, to whom does, \
          to whom do",
     ),
+    (Mark::Not, "not, rather than, instead of, but not"),
+    (Mark::Own, "own, owns, share, shares, all share, both share"),
     (Mark::Put, "put, place, set, lay, store, drop, move"),
     (Mark::Destination, "to, into, onto, for, over to, back to, back in, back on"),
     (

@@ -2,6 +2,7 @@
 
 use super::interpretation::{Hint, NounPhrase, Relation};
 use super::labels::{fit, joined, words_of};
+use super::synonyms::{Kinship, kinship};
 use super::{LEAST_MATCH, MappedThing, RIVAL, SURE};
 use crate::space::{distance, weight};
 
@@ -46,11 +47,13 @@ pub(super) fn place_fit(things: &[MappedThing<'_>], thing: usize, hints: &[Hint]
 }
 
 fn hint_fit(things: &[MappedThing<'_>], thing: usize, hint: &Hint) -> f64 {
-    let place = &hint.anchor.class;
-    let asked = joined(place);
-    let in_room = |room: Option<&str>| room.is_some_and(|room| joined(&words_of(room)) == asked);
-    let is_room = things.iter().any(|other| in_room(other.room))
-        || ROOMS.iter().any(|room| joined(&words_of(room)) == asked);
+    let asked = joined(&hint.place);
+    let is_asked = |room: &str| {
+        let room = joined(&words_of(room));
+        room == asked || kinship(&room, &asked) == Some(Kinship::Same)
+    };
+    let in_room = |room: Option<&str>| room.is_some_and(is_asked);
+    let is_room = things.iter().any(|other| in_room(other.room)) || ROOMS.iter().any(|room| is_asked(room));
     if is_room && (hint.relation == Relation::In || anchors(things, &hint.anchor).is_empty()) {
         return match things[thing].room {
             Some(room) if !in_room(Some(room)) => 0.0,

@@ -126,7 +126,7 @@ pub(super) fn which(scene: &Scene<'_>, candidates: &[usize]) -> String {
         Some((feature, true)) => format!("Whose {noun} do you mean: {}?", alternatives(feature)),
         Some((feature, false)) => format!("Which one do you mean: {}?", alternatives(feature)),
         None => format!(
-            "I know {} of these, and cannot tell them apart: {}. Which one do you mean?",
+            "I know {} like {} and cannot tell them apart. Will any of them do?",
             candidates.len(),
             scene.name(candidates[0]).name
         ),
@@ -162,7 +162,7 @@ fn is_it(scene: &Scene<'_>, thing: usize) -> String {
     let whose = scene.whose(scene.owners(thing));
     match (wanted(scene), scene.interpretation.thing.owner, whose) {
         (_, OwnerReference::Speaker, Some(whose)) => {
-            format!("Who are you? I know only {}, which {} {whose}.", name.name, name.is.to_lowercase())
+            format!("I know only {}, which {} {whose}. Who are you?", name.name, name.is.to_lowercase())
         }
         (_, OwnerReference::Speaker, None) => format!("{} {} yours?", name.is, name.name),
         (Some(wanted), ..) => format!("{} {} {wanted}?", name.is, name.name),
@@ -183,21 +183,19 @@ fn wanted(scene: &Scene<'_>) -> Option<String> {
 
 /// Why nothing is handed out: what is here instead, and whose it is.
 pub(super) fn why_none(scene: &Scene<'_>, instead: &[usize]) -> String {
-    let words = scene.interpretation.thing.class.join(" ");
-    let asked = match (words.as_str(), wanted(scene)) {
-        ("", _) => return "I do not know which thing is meant.".to_owned(),
-        (words, None) => format!("{words} like that"),
-        (words, Some(wanted)) => format!("{words} that is {wanted}"),
+    let words = scene.interpretation.thing.said.as_str();
+    if words.is_empty() {
+        return "I do not know which thing is meant.".to_owned();
+    }
+    let there = if scene.interpretation.hints.is_empty() { "" } else { " there" };
+    let start = match (scene.interpretation.thing.owner, wanted(scene)) {
+        _ if instead.is_empty() => return format!("I know of no {words}."),
+        (OwnerReference::Unknown, _) => format!("I do not know whose {words} you mean."),
+        (OwnerReference::Ours(_), _) => format!("I know of no {words}{there} that you share."),
+        (_, Some(whose)) => format!("I know of no {words} of {whose}{there}."),
+        (_, None) => format!("I know of no {words}{there}."),
     };
-    let unknown = scene.interpretation.thing.owner == OwnerReference::Unknown;
-    let start = if unknown {
-        format!("I do not know whose {words} is meant.")
-    } else if instead.is_empty() {
-        format!("I know of no {words} here.")
-    } else {
-        format!("I know of no {asked}.")
-    };
-    let mut found: Vec<String> = instead
+    let mut known: Vec<String> = instead
         .iter()
         .take(LISTED)
         .map(|&thing| {
@@ -210,11 +208,7 @@ pub(super) fn why_none(scene: &Scene<'_>, instead: &[usize]) -> String {
         })
         .collect();
     if instead.len() > LISTED {
-        found.push("others".to_owned());
+        known.push(format!("{} more", instead.len() - LISTED));
     }
-    match found.as_slice() {
-        [] => start,
-        [only] => format!("{start} There is {only}."),
-        [most @ .., last] => format!("{start} There is {}; and {last}.", most.join("; ")),
-    }
+    format!("{start} I know {}.", known.join(", and "))
 }
