@@ -9,7 +9,7 @@ use crate::captions::test_support::roster;
 use crate::roster::Roster;
 use crate::support::{id, scores, user};
 
-const FILES: [&str; 2] = ["expressions.txt", "winding.txt"];
+const FILES: [&str; 3] = ["expressions.txt", "winding.txt", "unseen.txt"];
 
 fn said() -> impl Strategy<Value = Expression> {
     let all: Vec<Expression> = FILES.into_iter().flat_map(expressions).collect();
