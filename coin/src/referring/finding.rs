@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use coin_schemas::household::ObjectId;
+use coin_schemas::household::{ObjectId, Score};
 
 use super::interpretation::{Interpretation, interpret};
 use super::labels::{Fit, fit, words_of};
@@ -124,7 +124,7 @@ fn judge(things: &[MappedThing<'_>], interpretation: &Interpretation) -> Vec<Jud
                 (true, true) => Fit { noun: 1.0, whole: 1.0 },
                 (true, false) => Fit { noun: 0.0, whole: 0.0 },
             };
-            let likeness = thing.likeness.map_or(0.0, |likeness| likeness.value());
+            let likeness = thing.likeness.map_or(0.0, Score::value);
             fit = Fit { noun: fit.noun.max(likeness), whole: fit.whole.max(likeness) };
             // What the words do not describe is not looked for at a place.
             let described = fit.whole >= LEAST_MATCH;
@@ -145,7 +145,7 @@ fn decide(judged: &[Judged], scene: &Scene<'_>) -> Decision {
             .filter(|judged| judged.ownership.is_some_and(|ownership| ownership.probability > EXCLUDED))
             .collect(),
     };
-    let rivals = best(&possible, |judged| judged.score());
+    let rivals = best(&possible, Judged::score);
     match rivals.as_slice() {
         [] => refuse(judged, scene),
         [only] if only.is_owned(SURE) => Decision::Found(scene.things[only.thing].id.clone()),

@@ -1,6 +1,6 @@
 //! Reads a request: which words are the thing's, whose it is said to be, and where.
 
-use super::labels::words_of;
+use super::labels::{properties_first, words_of};
 use super::ownership::OwnerReference;
 use super::phrases::{LONGEST_PHRASE, Mark, mark};
 use crate::language::contractions::{Token, longest, tokens};
@@ -52,7 +52,7 @@ impl NounPhrase {
 
     fn finish(&mut self) {
         self.said = self.class.join(" ");
-        self.class = words_of(&self.said);
+        self.class = properties_first(words_of(&self.said));
     }
 }
 
@@ -101,6 +101,7 @@ pub fn interpret(roster: &Roster, query: &str, speaker: Option<UserIndex>) -> In
         tokens: &tokens,
         named: None,
         putting: false,
+        placing: false,
         meaning: Interpretation { purpose: Purpose::Thing, thing: NounPhrase::default(), hints: Vec::new() },
     };
     reader.read();
@@ -143,6 +144,8 @@ struct Reader<'text> {
     named: Option<UserIndex>,
     /// Whether the thing is to be put somewhere.
     putting: bool,
+    /// Whether words belong to the last place, and not to the thing.
+    placing: bool,
     meaning: Interpretation,
 }
 
@@ -150,10 +153,13 @@ impl Reader<'_> {
     fn read(&mut self) {
         let mut at = 0;
         while at < self.tokens.len() {
+            // A comma ends a place: "the book in the study, the red one".
+            self.placing &= self.tokens[at].gap < Gap::Comma;
             if let Some((owner, next)) = self.possessor(at) {
                 self.set_owner(owner);
-                if let Some(hint) = self.meaning.hints.last_mut() {
-                    hint.place.extend(self.tokens[at..next].iter().map(|token| token.text.clone()));
+                let tokens = &self.tokens[at..next];
+                if let Some(hint) = self.place() {
+                    hint.place.extend(tokens.iter().map(|token| token.text.clone()));
                 }
                 at = next;
                 continue;
@@ -202,6 +208,7 @@ impl Reader<'_> {
                 Some(Mark::Put) => self.putting = true,
                 Some(Mark::Whose) => self.meaning.purpose = Purpose::Owner,
                 Some(Mark::Place(relation)) => {
+                    self.placing = true;
                     self.meaning.hints.push(Hint {
                         relation,
                         place: Vec::new(),
@@ -239,14 +246,18 @@ impl Reader<'_> {
 
     /// The phrase that is being read: the last place, or the thing.
     fn phrase(&mut self) -> &mut NounPhrase {
-        match self.meaning.hints.last_mut() {
+        match self.meaning.hints.last_mut().filter(|_| self.placing) {
             Some(hint) => &mut hint.anchor,
             None => &mut self.meaning.thing,
         }
     }
 
+    fn place(&mut self) -> Option<&mut Hint> {
+        self.meaning.hints.last_mut().filter(|_| self.placing)
+    }
+
     fn push(&mut self, word: &str) {
-        if let Some(hint) = self.meaning.hints.last_mut() {
+        if let Some(hint) = self.place() {
             hint.place.push(word.to_owned());
         }
         self.phrase().class.push(word.to_owned());
@@ -314,6 +325,10 @@ impl Reader<'_> {
                 |found| (self.reference(found), found.next),
             );
             return Some((owner, next, true));
+        }
+        let anybody = matches!(text, "anybody" | "anyone" | "somebody" | "someone");
+        if anybody && token.possessive {
+            return Some((OwnerReference::Anybody, at + 1, true));
         }
         if let Some(found) = self.finder.at(at, self.named).filter(|found| is_somebody(found.party)) {
             return Some((self.reference(found), found.next, found.possessive));

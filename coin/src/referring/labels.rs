@@ -44,13 +44,13 @@ pub(super) fn words_of(name: &str) -> Vec<String> {
         && of > 0
         && of + 1 < words.len()
     {
-        return words[of + 1..].iter().chain(&words[..of]).filter_map(noun_word).collect();
+        return words[of + 1..].iter().chain(&words[..of]).filter_map(|word| noun_word(word)).collect();
     }
-    words.iter().filter_map(noun_word).collect()
+    words.iter().filter_map(|word| noun_word(word)).collect()
 }
 
-fn noun_word(word: &String) -> Option<String> {
-    (!matches!(word.as_str(), "the" | "a" | "an" | "of")).then(|| singular(word))
+fn noun_word(word: &str) -> Option<String> {
+    (!matches!(word, "the" | "a" | "an" | "of")).then(|| singular(word))
 }
 
 /// One form for "tooth brush" and "toothbrush".
@@ -128,6 +128,13 @@ fn detail(asked: &[String], label: &[String]) -> f64 {
     let kinds = if asked_kinds.is_empty() && label_kinds.is_empty() { 1.0 } else { STEP };
     let properties = if asked_properties.is_empty() { 1.0 } else { STEP * STEP };
     kinds * properties
+}
+
+/// Puts properties that stand behind the noun before it: "the mug, the blue one" is the blue mug.
+pub(super) fn properties_first(mut words: Vec<String>) -> Vec<String> {
+    let behind = words.iter().rev().take_while(|word| group(word).is_some()).count();
+    words.rotate_right(behind);
+    words
 }
 
 /// The line of [`PROPERTIES`] in which the word stands.

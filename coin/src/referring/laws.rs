@@ -37,8 +37,11 @@ fn retyped(said: &str, capitals: &[bool], spaces: &[u8]) -> String {
     text
 }
 
+/// Class, place, room, and what the members' scores are made of.
+type Thing<T> = (&'static str, [f64; 3], Option<&'static str>, Vec<T>);
+
 /// A home of three people with cups, mugs and books of random owners at random places.
-fn made_up() -> impl Strategy<Value = Vec<(&'static str, [f64; 3], Option<&'static str>, Vec<f64>)>> {
+fn made_up() -> impl Strategy<Value = Vec<Thing<f64>>> {
     let class = proptest::sample::select(vec!["cup", "mug", "red cup", "book", "kettle"]);
     let room = proptest::option::of(proptest::sample::select(vec!["kitchen", "study"]));
     let thing = (class, [0.0..9.0, 0.0..9.0, 0.0..2.0], room, proptest::collection::vec(0.0..=1.0, 3));
@@ -59,11 +62,11 @@ const REQUESTS: [&str; 8] = [
 struct Map {
     roster: Roster,
     ids: Vec<ObjectId>,
-    things: Vec<(&'static str, [f64; 3], Option<&'static str>, Vec<Score>)>,
+    things: Vec<Thing<Score>>,
 }
 
 impl Map {
-    fn new(things: Vec<(&'static str, [f64; 3], Option<&'static str>, Vec<f64>)>) -> Self {
+    fn new(things: Vec<Thing<f64>>) -> Self {
         let roster = roster(&[("Bob", "father"), ("Mary", "mother"), ("Tom", "son")]);
         let ids = (0..things.len()).map(|place| id(&place.to_string())).collect();
         let things = things
@@ -145,7 +148,7 @@ proptest! {
 
     #[test]
     fn the_speakers_own_things_are_no_one_elses(things in made_up(), speaker in 0_usize..3) {
-        let own = |mut thing: (&'static str, [f64; 3], Option<&'static str>, Vec<f64>)| {
+        let own = |mut thing: Thing<f64>| {
             thing.3 = (0..3).map(|place| if place == speaker { 1.0 } else { 0.0 }).collect();
             thing
         };

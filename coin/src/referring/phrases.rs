@@ -37,7 +37,7 @@ const PHRASES: &[(Mark, &str)] = &[
          would, will, please, me, us, i, we, you, want, wants, need, needs, like, would like, have, has, seen, look, \
          looking, look for, looking for, search for, searching for, where, where is, where are, did, do, does, am, \
          are, is, was, were, be, leave, left, lost, lose, forgot, hey, hi, hello, robot, coin, ok, okay, thanks, \
-         thank you, thank, the, a, an, some, any, mind, tell, know, there, here, this, that, these, those, it, one, \
+         thank you, thank, the, a, an, some, any, mind, tell, know, there, here, this, that, these, those, or, it, one, \
          ones, again, now, quickly, quick, kindly, just, so, with, over, back, thing, things, stuff, something, \
          anything, for me, for us, over here, over there, right now, at once, if you can, anywhere, somewhere, which, \
          what, called, try, let's, let, see, ever, possible, if, when, time, may, might, must, should, read, use, wear, play, play with, drink, drink from, write with, eat, wash, \

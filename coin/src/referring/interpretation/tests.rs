@@ -104,3 +104,10 @@ fn who_lives_alone_owns_what_is_ours() {
     let alone = roster(&[("Bob", "")]);
     assert_eq!(interpret(&alone, "our cup", Some(user(0))).thing.owner, members(&[0]));
 }
+
+#[test]
+fn behind_a_comma_the_thing_is_told_more_of() {
+    let read = read("the book in the kitchen, the red one that is mine");
+    assert_eq!((read.thing.class.join(" ").as_str(), read.thing.owner), ("red book", members(&[0])));
+    assert_eq!(read.hints.len(), 1);
+}
