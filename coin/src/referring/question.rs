@@ -95,6 +95,13 @@ impl Scene<'_> {
 /// What tells candidates apart, in words; `None` for a candidate of which it says nothing.
 type Feature = Vec<Option<String>>;
 
+/// How a question about a feature begins.
+#[derive(Clone, Copy)]
+enum Asked {
+    Whose,
+    Which,
+}
+
 /// The one question that separates the candidates best: by label, owner, room or neighbour, whichever leaves the
 /// fewest candidates over on average, Σ n² / n over its groups. On a tie the one that a person knows best comes first, in
 /// this order. One candidate alone is in doubt because of its owner.
@@ -115,7 +122,8 @@ pub(super) fn which(scene: &Scene<'_>, candidates: &[usize]) -> String {
         .map(|(neighbour, &thing)| Some(format!("{} {}", scene.bare_name(thing).name, neighbour.as_ref()?)))
         .collect();
     let one_label = left_over(&labels) >= candidates.len() as f64;
-    let features = [(&labels, false), (&owners, true), (&rooms, false), (&nearby, false)];
+    let features =
+        [(&labels, Asked::Which), (&owners, Asked::Whose), (&rooms, Asked::Which), (&nearby, Asked::Which)];
     let best = features
         .into_iter()
         .min_by(|left, right| left_over(left.0).total_cmp(&left_over(right.0)))
@@ -123,8 +131,8 @@ pub(super) fn which(scene: &Scene<'_>, candidates: &[usize]) -> String {
     let noun = if one_label { scene.bare_name(candidates[0]).name } else { "the thing".to_owned() };
     let noun = noun.trim_start_matches("the ").to_owned();
     match best {
-        Some((feature, true)) => format!("Whose {noun} do you mean: {}?", alternatives(feature)),
-        Some((feature, false)) => format!("Which one do you mean: {}?", alternatives(feature)),
+        Some((feature, Asked::Whose)) => format!("Whose {noun} do you mean: {}?", alternatives(feature)),
+        Some((feature, Asked::Which)) => format!("Which one do you mean: {}?", alternatives(feature)),
         None => format!(
             "I know {} like {} and cannot tell them apart. Will any of them do?",
             candidates.len(),
