@@ -4,7 +4,7 @@ use super::Action;
 use super::lexicon::Tag;
 use super::tokens::{Token, is_one_of, keys};
 use super::verbs::Sense;
-use super::words::Key;
+use crate::language::words::Key;
 
 /// The action of the verb at `place`; `None` where it is no verb, or one that says nothing of the thing.
 pub(super) fn action_at(tokens: &[Token], place: usize) -> Option<Action> {

@@ -7,10 +7,10 @@
 use super::Action;
 use super::action::action_at;
 use super::lexicon::{Lexicon, Tag};
-use super::people::People;
 use super::tokens::{Kind, Token, is_one_of, is_possessive, keys, tokens};
 use super::verbs::{Form, Sense};
-use super::words::{Gap, Key};
+use crate::language::people::People;
+use crate::language::words::{Gap, Key};
 use crate::roster::UserIndex;
 
 const THE: Key = Key::of_folded("the");

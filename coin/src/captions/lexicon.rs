@@ -1,7 +1,7 @@
 //! Every word that the grammar of captions knows, looked up by its key.
 
 use super::verbs::{Form, IRREGULAR, REGULAR, Sense, inflect};
-use super::words::{Key, Word};
+use crate::language::words::{Key, Word};
 
 /// What a word does in a caption.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

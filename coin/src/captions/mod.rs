@@ -14,16 +14,15 @@ use coin_schemas::tools::MAX_TEXT_BYTES;
 use jiff::civil::DateTime;
 use thiserror::Error;
 
+use crate::language::people::People;
 use crate::roster::{Roster, UserIndex};
 
 mod action;
 mod clause;
 mod lexicon;
-pub(crate) mod people;
 mod time;
 mod tokens;
 mod verbs;
-pub(crate) mod words;
 
 #[cfg(test)]
 mod laws;
@@ -156,14 +155,14 @@ pub enum CaptionError {
 /// Reads captions of one household. Names and roles are prepared once, so keep it for many captions.
 #[derive(Debug, Clone)]
 pub struct CaptionReader {
-    people: people::People,
+    people: People,
     lexicon: lexicon::Lexicon,
 }
 
 impl CaptionReader {
     /// Prepares the names and roles of the members.
     pub fn new(roster: &Roster) -> Self {
-        Self { people: people::People::new(roster), lexicon: lexicon::Lexicon::new() }
+        Self { people: People::new(roster), lexicon: lexicon::Lexicon::new() }
     }
 
     /// Reads `YYYY-MM-DD HH:MM[:SS] TEXT` (or the same with `T`). Spaces around the line do not matter.

@@ -1,9 +1,9 @@
 //! A caption as a short row of tokens: people, and words that the lexicon knows or does not.
 
 use super::lexicon::{Lexicon, Tag};
-use super::people::{Called, Kin, People, Relative};
 use super::verbs::{Form, Sense};
-use super::words::{Gap, Key, Word, Words};
+use crate::language::people::{Called, Kin, People, Relative};
+use crate::language::words::{Gap, Key, Word, Words};
 use crate::roster::UserIndex;
 
 /// Captions of up to so many words are read without taking memory from the heap.

@@ -114,6 +114,11 @@ fn entry_of(class: &str) -> Option<&'static Entry> {
     })
 }
 
+/// The names of all classes that something is known of.
+pub(crate) fn class_names() -> impl Iterator<Item = &'static str> {
+    ENTRIES.iter().flat_map(|entry| entry.names.iter().copied())
+}
+
 /// Whose things of the class tend to be; `None` where nothing is known of the class.
 pub fn tendency(class: &str) -> Option<Tendency> {
     entry_of(class).map(|entry| entry.tendency)

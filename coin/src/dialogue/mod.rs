@@ -5,8 +5,8 @@ mod answer;
 mod choices;
 mod explanation;
 mod question;
-mod thing;
-mod wording;
+pub(crate) mod thing;
+pub(crate) mod wording;
 
 pub use answer::{Reading, read_answer};
 pub use choices::{Choice, Meaning, choices, meaning_of};

@@ -1,25 +1,9 @@
 //! How a thing is called in a sentence.
 
+use crate::language::number::SINGULARS;
+
 /// Head nouns that are always plural although they end in no s, or in a form that looks singular.
 const PLURALS: &[&str] = &["dice", "feet", "teeth", "people", "children", "glasses", "dishes", "clothes"];
-
-/// Nouns that end in s and are singular.
-const SINGULARS: &[&str] = &[
-    "lens",
-    "gas",
-    "canvas",
-    "atlas",
-    "bus",
-    "iris",
-    "chess",
-    "series",
-    "news",
-    "christmas",
-    "bias",
-    "tennis",
-    "mattress",
-    "compass",
-];
 
 /// Labels that say no more than "thing".
 const PLACEHOLDERS: &[&str] = &["object", "unknown", "unknown object", "item", "thing", "misc", "other"];
@@ -32,21 +16,21 @@ const ON: &[&str] = &["balcony", "terrace", "porch", "patio", "deck", "landing",
 
 /// A thing with its article and place, and the words that agree with it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Thing {
+pub(crate) struct Thing {
     /// "the scissors in the kitchen"
-    pub(super) name: String,
+    pub(crate) name: String,
     /// "Is" or "Are"
-    pub(super) is: &'static str,
+    pub(crate) is: &'static str,
     /// "Does" or "Do"
-    pub(super) does: &'static str,
+    pub(crate) does: &'static str,
     /// "it" or "they"
-    pub(super) it: &'static str,
+    pub(crate) it: &'static str,
     /// "it" or "them"
-    pub(super) object: &'static str,
+    pub(crate) object: &'static str,
 }
 
 impl Thing {
-    pub(super) fn new(class: &str, room: Option<&str>, position: [f64; 3]) -> Self {
+    pub(crate) fn new(class: &str, room: Option<&str>, position: [f64; 3]) -> Self {
         let noun = noun(class);
         let room = room.map(tidy).filter(|room| !room.is_empty());
         let place = match (&room, &noun) {

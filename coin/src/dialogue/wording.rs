@@ -5,7 +5,7 @@ use crate::roster::Roster;
 
 /// The word before the last name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Joined {
+pub(crate) enum Joined {
     /// They are meant together.
     And,
     /// One of them is meant.
@@ -13,12 +13,12 @@ pub(super) enum Joined {
 }
 
 /// "Bob", "Bob and Mary", "Bob, Mary and Tom".
-pub(super) fn list(roster: &Roster, set: OwnerSet, joined: Joined) -> String {
+pub(crate) fn list(roster: &Roster, set: OwnerSet, joined: Joined) -> String {
     join(&set.iter().map(|user| roster.name(user).to_string()).collect::<Vec<_>>(), joined)
 }
 
 /// The parts with commas between them, and a word before the last one.
-pub(super) fn join(parts: &[String], joined: Joined) -> String {
+pub(crate) fn join(parts: &[String], joined: Joined) -> String {
     let word = match joined {
         Joined::And => "and",
         Joined::Or => "or",

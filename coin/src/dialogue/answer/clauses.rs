@@ -1,7 +1,8 @@
 //! Cuts an answer into sentences and these into segments that each say one thing.
 
-use super::units::{Kind, Mark, Party, Unit, Units, Verb};
-use crate::captions::words::Gap;
+use super::units::{Kind, Mark, Unit, Units, Verb};
+use crate::language::parties::Party;
+use crate::language::words::Gap;
 use crate::owners::OwnerSet;
 
 /// The groups that "everyone" and "both" mean.

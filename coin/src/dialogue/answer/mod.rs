@@ -16,15 +16,14 @@
 use coin_schemas::tools::MAX_TEXT_BYTES;
 
 use self::clauses::{Named, Segment, Statement, sentences};
-use self::units::{Speech, units};
-use crate::captions::people::People;
-use crate::captions::words::Gap;
+use self::units::units;
+use crate::language::parties::Speech;
+use crate::language::people::People;
+use crate::language::words::Gap;
 use crate::owners::OwnerSet;
 use crate::roster::{Roster, UserIndex};
 
 mod clauses;
-mod contractions;
-mod parties;
 mod statements;
 mod units;
 mod vocabulary;

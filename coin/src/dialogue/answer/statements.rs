@@ -1,7 +1,8 @@
 //! Tells what one segment of an answer says.
 
 use super::clauses::{Named, Segment, Statement};
-use super::units::{Kind, Mark, Party, Place, Unit, Verb};
+use super::units::{Kind, Mark, Place, Unit, Verb};
+use crate::language::parties::Party;
 use crate::owners::OwnerSet;
 
 /// A party and where it stands.
@@ -385,6 +386,7 @@ impl Clause<'_> {
                 | Party::Nobody
                 | Party::NoneOfUs
                 | Party::They
+                | Party::OneOf(_)
                 | Party::Unknown => return None,
             }
         }

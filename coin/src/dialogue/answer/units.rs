@@ -1,58 +1,13 @@
 //! An answer as a row of units: people, words that the grammar knows, and others.
 
-use super::contractions::{Token, tokens};
-use super::parties::Finder;
-use super::vocabulary::{BEHIND_CONTRACTED_IS, KIN_ADJECTIVES, NOT_POSSESSIONS, lists, mark};
-use crate::captions::people::People;
-use crate::captions::words::{Gap, Word, Words};
+use super::vocabulary::{BEHIND_CONTRACTED_IS, NOT_POSSESSIONS, mark};
+use crate::language::contractions::{Token, longest, tokens};
+use crate::language::parties::{Finder, Party, Speech};
+use crate::language::people::People;
+use crate::language::vocabulary::{KIN_ADJECTIVES, lists};
+use crate::language::words::{Gap, Word, Words};
 use crate::owners::OwnerSet;
 use crate::roster::UserIndex;
-
-/// Whose words are read: it decides who "me" and "you" are.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Speech {
-    /// A person answers.
-    Answer {
-        /// Who, where it is known.
-        speaker: Option<UserIndex>,
-    },
-    /// The robot asks.
-    Question {
-        /// Who is asked, where it is known.
-        asked: Option<UserIndex>,
-    },
-}
-
-/// Whom a text speaks of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Party {
-    /// These members.
-    Members(OwnerSet),
-    /// All of the household.
-    Everyone,
-    /// All of the household, said by one of them.
-    Ours,
-    /// The two that the question names, or the two of a household of two.
-    Both,
-    /// All of a household of three.
-    Three,
-    /// People who do not live here.
-    Outside,
-    /// Somebody other than those named.
-    SomeoneElse,
-    /// Nobody.
-    Nobody,
-    /// Nobody of the household.
-    NoneOfUs,
-    /// Anyone of the household.
-    AnyOfUs,
-    /// Anyone.
-    Anyone,
-    /// People whom the text does not name again.
-    They,
-    /// Somebody whom the reader cannot identify.
-    Unknown,
-}
 
 /// The relation that a preposition makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -176,8 +131,9 @@ pub(super) fn units(people: &People, text: &str, speech: Speech) -> Units {
         }
         let (mark, length) = phrase(&tokens[at..]);
         // "I think" is a phrase, "I" alone is a person; a name is always one.
-        let found =
-            finder.at(at, &row).filter(|found| found.named || length == 1 || found.next - at > length);
+        let found = finder
+            .at(at, last_named(&row))
+            .filter(|found| found.named || length == 1 || found.next - at > length);
         if let Some(found) = found {
             let next = tokens.get(found.next);
             let contracted =
@@ -221,7 +177,7 @@ fn is_contracted(next: &Token, finder: &Finder<'_>, at: usize, row: &[Unit]) -> 
     });
     let follows = next.gap < Gap::Comma && lists(BEHIND_CONTRACTED_IS, &next.text);
     // "Bob's not Mary's" says whose, "Bob's not here" says where.
-    follows && opens && !(next.text == "not" && finder.at(at + 1, row).is_some())
+    follows && opens && !(next.text == "not" && finder.at(at + 1, last_named(row)).is_some())
 }
 
 /// The number of words up to and with one that names no possession: "birthday present".
@@ -236,26 +192,12 @@ fn phrase(tokens: &[Token]) -> (Option<Mark>, usize) {
         .map_or((None, 1), |(mark, length)| (Some(mark), length))
 }
 
-/// The longest run of up to `most` tokens, only spaces between them, that means something. `meaning` is told
-/// whether the last token is possessive; no other one may be.
-pub(super) fn longest<T>(
-    tokens: &[Token],
-    most: usize,
-    meaning: impl Fn(&str, bool) -> Option<T>,
-) -> Option<(T, usize)> {
-    let mut phrase = String::new();
-    let mut best = None;
-    for (index, token) in tokens.iter().take(most).enumerate() {
-        if index > 0 {
-            if token.gap != Gap::Space || tokens[index - 1].possessive {
-                break;
-            }
-            phrase.push(' ');
-        }
-        phrase.push_str(&token.text);
-        best = meaning(&phrase, token.possessive).map(|meant| (meant, index + 1)).or(best);
-    }
-    best
+/// The member who was named last, alone.
+fn last_named(row: &[Unit]) -> Option<UserIndex> {
+    row.iter().rev().find_map(|unit| match unit.kind {
+        Kind::Party { party: Party::Members(members), .. } if members.len() == 1 => members.iter().next(),
+        _ => None,
+    })
 }
 
 /// All members that a text names.

@@ -95,6 +95,11 @@ impl Word {
     pub(crate) const FILLER: Self =
         Self { start: 0, end: 0, key: Key(0), possessive: false, capital: false, gap: Gap::Space };
 
+    /// The place behind the word in its text, its possessive ending left out, in bytes.
+    pub(crate) fn end(&self) -> usize {
+        self.end as usize
+    }
+
     /// The word as it is written, without its possessive ending.
     pub(crate) fn text<'text>(&self, text: &'text str) -> &'text str {
         &text[self.start as usize..self.end as usize]

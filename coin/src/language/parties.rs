@@ -1,25 +1,72 @@
-//! Finds whom an answer speaks of: names, roles, relatives, "mine", "everybody", "a guest".
+//! Finds whom a text speaks of: names, roles, relatives, "mine", "everybody", "a guest".
 
-use super::contractions::Token;
-use super::units::{Kind, Party, Speech, Unit, longest};
+use super::contractions::{Token, longest};
+use super::people::{Called, Kin, Mention, People, Relative, kin_of_plural};
 use super::vocabulary::{FAR_KIN, INSTITUTIONS, KIN_ADJECTIVES, OUTSIDERS, group, lists};
-use crate::captions::people::{Called, Kin, Mention, People, Relative, kin_of_plural};
-use crate::captions::words::{Gap, Key, Word};
+use super::words::{Gap, Key, Word};
 use crate::owners::OwnerSet;
 use crate::roster::UserIndex;
+
+/// Whose words are read: it decides who "me" and "you" are.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Speech {
+    /// A person answers.
+    Answer {
+        /// Who, where it is known.
+        speaker: Option<UserIndex>,
+    },
+    /// The robot asks.
+    Question {
+        /// Who is asked, where it is known.
+        asked: Option<UserIndex>,
+    },
+}
+
+/// Whom a text speaks of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Party {
+    /// These members.
+    Members(OwnerSet),
+    /// One of these members, and it is not said which.
+    OneOf(OwnerSet),
+    /// All of the household.
+    Everyone,
+    /// All of the household, said by one of them.
+    Ours,
+    /// The two that the question names, or the two of a household of two.
+    Both,
+    /// All of a household of three.
+    Three,
+    /// People who do not live here.
+    Outside,
+    /// Somebody other than those named.
+    SomeoneElse,
+    /// Nobody.
+    Nobody,
+    /// Nobody of the household.
+    NoneOfUs,
+    /// Anyone of the household.
+    AnyOfUs,
+    /// Anyone.
+    Anyone,
+    /// People whom the text does not name again.
+    They,
+    /// Somebody whom the reader cannot identify.
+    Unknown,
+}
 
 /// The longest phrase for a group, in words.
 const LONGEST_PHRASE: usize = 5;
 
 /// Somebody found in the text.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
-    pub(super) party: Party,
-    pub(super) possessive: bool,
+pub(crate) struct Found {
+    pub(crate) party: Party,
+    pub(crate) possessive: bool,
     /// The place of the token behind.
-    pub(super) next: usize,
+    pub(crate) next: usize,
     /// Whether it begins with a name.
-    pub(super) named: bool,
+    pub(crate) named: bool,
 }
 
 /// What a noun for a person means, whoever they belong to.
@@ -36,7 +83,7 @@ enum Noun {
 }
 
 /// Looks for people in one text.
-pub(super) struct Finder<'text> {
+pub(crate) struct Finder<'text> {
     people: &'text People,
     text: &'text str,
     words: &'text [Word],
@@ -46,7 +93,7 @@ pub(super) struct Finder<'text> {
 }
 
 impl<'text> Finder<'text> {
-    pub(super) fn new(
+    pub(crate) fn new(
         people: &'text People,
         text: &'text str,
         words: &'text [Word],
@@ -63,13 +110,14 @@ impl<'text> Finder<'text> {
         Self { people, text, words, tokens, me, you }
     }
 
-    /// Whoever is named from the token `at` on; `before` tells whom "his" means.
-    pub(super) fn at(&self, at: usize, before: &[Unit]) -> Option<Found> {
+    /// Whoever is named from the token `at` on. `last` is the member who was named last and whom "his" means before a
+    /// relative.
+    pub(crate) fn at(&self, at: usize, last: Option<UserIndex>) -> Option<Found> {
         self.name(at)
             .map(|found| Found { named: true, ..found })
-            .or_else(|| self.indefinite(at, before))
+            .or_else(|| self.indefinite(at, last))
             .or_else(|| self.group(at))
-            .or_else(|| self.pronoun(at, before))
+            .or_else(|| self.pronoun(at, last))
             .or_else(|| self.definite(at))
             .map(|found| self.relatives_of(found))
             .map(|found| self.named_behind(found))
@@ -107,7 +155,7 @@ impl<'text> Finder<'text> {
         Some(Found { party, possessive: possessive || inherent, next: at + length, named: false })
     }
 
-    fn pronoun(&self, at: usize, before: &[Unit]) -> Option<Found> {
+    fn pronoun(&self, at: usize, last: Option<UserIndex>) -> Option<Found> {
         let found =
             |party: Party, possessive: bool| Some(Found { party, possessive, next: at + 1, named: false });
         match (self.text_at(at), self.you) {
@@ -119,12 +167,7 @@ impl<'text> Finder<'text> {
                 // With a relative behind it the pronoun means whoever was named last; alone it means nobody
                 // that the reader could tell.
                 let noun = self.noun_behind(at + 1).is_some();
-                let last = before.iter().rev().find_map(|unit| match unit.kind {
-                    Kind::Party { party: Party::Members(members), .. } if members.len() == 1 => {
-                        Some(Party::Members(members))
-                    }
-                    _ => None,
-                });
+                let last = last.map(|user| Party::Members(OwnerSet::single(user)));
                 found(last.filter(|_| noun).unwrap_or(Party::Unknown), true)
             }
             _ => None,
@@ -132,9 +175,9 @@ impl<'text> Finder<'text> {
     }
 
     /// "a guest", "one of our neighbours", "some colleague of mine": nobody in particular.
-    fn indefinite(&self, at: usize, before: &[Unit]) -> Option<Found> {
+    fn indefinite(&self, at: usize, last: Option<UserIndex>) -> Option<Found> {
         match (self.text_at(at), self.text_at(at + 1)) {
-            ("one" | "some" | "any", "of") => return self.one_of(at + 2, before),
+            ("one" | "some" | "any", "of") => return self.one_of(at + 2, last),
             ("a" | "an" | "some" | "another" | "one" | "any", _) => {}
             _ => return None,
         }
@@ -156,8 +199,8 @@ impl<'text> Finder<'text> {
         }))
     }
 
-    fn one_of(&self, at: usize, before: &[Unit]) -> Option<Found> {
-        let whole = self.at(at, before)?;
+    fn one_of(&self, at: usize, last: Option<UserIndex>) -> Option<Found> {
+        let whole = self.at(at, last)?;
         (whole.party == Party::Outside).then_some(whole)
     }
 
@@ -166,7 +209,11 @@ impl<'text> Finder<'text> {
         let start = if self.text_at(at) == "the" { at + 1 } else { at };
         let with_article = start > at;
         if let Some((mention, next)) = self.mention(start) {
-            return Some(self.of_somebody(found(mention, next)));
+            let mut found = found(mention, next);
+            if let (None, Some(noun)) = (mention.who, self.noun(start)) {
+                found.party = self.of_household(noun);
+            }
+            return Some(self.of_somebody(found));
         }
         let (noun, place) = if with_article { self.noun_behind(start)? } else { (self.noun(start)?, start) };
         let possessive = self.tokens[place].possessive;
@@ -217,6 +264,7 @@ impl<'text> Finder<'text> {
         match noun {
             Noun::Kin(kin) => match (self.people.all(kin), kin) {
                 (members, _) if members.len() == 1 => Party::Members(members),
+                (members, _) if members.len() > 1 => Party::OneOf(members),
                 (members, Kin::Grandmother | Kin::Grandfather) if members.is_empty() => {
                     party_of(self.people.stranger())
                 }
@@ -240,7 +288,10 @@ impl<'text> Finder<'text> {
         match (one, noun) {
             (_, Noun::Outsider) => Party::Outside,
             (_, Noun::FarKin) => party_of(self.people.stranger()),
-            (Some(of), Noun::Kin(kin)) => party_of(self.people.relative(of, kin)),
+            (Some(of), Noun::Kin(kin)) => match self.people.relatives(of, kin) {
+                members if members.len() > 1 => Party::OneOf(members),
+                _ => party_of(self.people.relative(of, kin)),
+            },
             (Some(of), Noun::Plural(kin)) => match self.people.relatives(of, kin) {
                 members if members.is_empty() => party_of(self.people.relative(of, kin)),
                 members => Party::Members(members),
@@ -284,7 +335,7 @@ impl<'text> Finder<'text> {
         }
         let article = usize::from(self.text_at(start) == "the");
         let of =
-            self.name(start + article).or_else(|| self.pronoun(start, &[])).or_else(|| self.group(start));
+            self.name(start + article).or_else(|| self.pronoun(start, None)).or_else(|| self.group(start));
         let Some(of) = of else { return found };
         let party = match (found.party, of.party, self.noun(found.next - 1)) {
             (Party::Outside, ..) => Party::Outside,
@@ -302,7 +353,7 @@ impl<'text> Finder<'text> {
             return found;
         }
         match (found.party, self.name(found.next)) {
-            (Party::Unknown, Some(name)) => name,
+            (Party::Unknown | Party::OneOf(_), Some(name)) => name,
             (Party::Outside, Some(name)) => Found { party: Party::Unknown, ..name },
             (party, Some(name)) if party == name.party => name,
             _ => found,

@@ -1,18 +1,18 @@
-//! The words of an answer with short forms written out, each with its place in the text.
+//! The words of a text with short forms written out, each with its place in the text.
 
 use super::vocabulary::CONTRACTIONS;
-use crate::captions::words::{Gap, Word, fold};
+use super::words::{Gap, Word, fold};
 
 /// A word, or one of the words that a short form stands for.
 #[derive(Debug, Clone)]
-pub(super) struct Token {
+pub(crate) struct Token {
     /// Lower case.
-    pub(super) text: String,
+    pub(crate) text: String,
     /// The place of the word in the text.
-    pub(super) word: usize,
-    pub(super) possessive: bool,
-    pub(super) capital: bool,
-    pub(super) gap: Gap,
+    pub(crate) word: usize,
+    pub(crate) possessive: bool,
+    pub(crate) capital: bool,
+    pub(crate) gap: Gap,
 }
 
 /// Words whose "'s" means "is".
@@ -22,7 +22,7 @@ const WITH_IS: &[&str] = &["it", "that", "this", "he", "she", "who", "what", "th
 const ENDINGS: &[(&str, &str)] =
     &[("n't", "not"), ("'m", "am"), ("'re", "are"), ("'ve", "have"), ("'ll", "will"), ("'d", "would")];
 
-pub(super) fn tokens(text: &str, words: &[Word]) -> Vec<Token> {
+pub(crate) fn tokens(text: &str, words: &[Word]) -> Vec<Token> {
     let mut tokens = Vec::with_capacity(words.len());
     for (place, word) in words.iter().enumerate() {
         let folded = fold(word.text(text));
@@ -54,4 +54,26 @@ fn split_ending(folded: &str) -> Option<(&str, &'static str)> {
         .iter()
         .find_map(|&(ending, meaning)| folded.strip_suffix(ending).map(|stem| (stem, meaning)))
         .filter(|(stem, _)| !stem.is_empty())
+}
+
+/// The longest run of up to `most` tokens, only spaces between them, that means something. `meaning` is told
+/// whether the last token is possessive; no other one may be.
+pub(crate) fn longest<T>(
+    tokens: &[Token],
+    most: usize,
+    meaning: impl Fn(&str, bool) -> Option<T>,
+) -> Option<(T, usize)> {
+    let mut phrase = String::new();
+    let mut best = None;
+    for (index, token) in tokens.iter().take(most).enumerate() {
+        if index > 0 {
+            if token.gap != Gap::Space || tokens[index - 1].possessive {
+                break;
+            }
+            phrase.push(' ');
+        }
+        phrase.push_str(&token.text);
+        best = meaning(&phrase, token.possessive).map(|meant| (meant, index + 1)).or(best);
+    }
+    best
 }
