@@ -6,6 +6,7 @@
 //! Questioning* (Hashimoto et al.); each stands in one function that names it.
 
 pub mod agent;
+pub mod assignment;
 pub mod baselines;
 pub mod calibration;
 pub mod captions;
@@ -14,6 +15,7 @@ pub mod conformal;
 pub mod dialogue;
 pub mod evidence;
 pub mod gate;
+pub mod map;
 pub mod metrics;
 pub mod owners;
 pub mod roster;
