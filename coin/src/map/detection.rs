@@ -36,10 +36,10 @@ pub struct Region {
 
 impl Region {
     /// Whether a place lies inside, at least `margin` metres from every face.
-    pub fn holds(&self, place: Position, margin: f64) -> bool {
+    pub fn holds(&self, place: [f64; 3], margin: f64) -> bool {
         let (least, greatest) = (self.least.metres(), self.greatest.metres());
         let inside = |axis: usize, at: f64| least[axis] + margin <= at && at <= greatest[axis] - margin;
-        place.metres().into_iter().enumerate().all(|(axis, at)| inside(axis, at))
+        place.into_iter().enumerate().all(|(axis, at)| inside(axis, at))
     }
 }
 
@@ -131,6 +131,11 @@ impl Sighting {
             view: view.id.clone(),
             feature,
         })
+    }
+
+    /// Whether this is the same detection again: of one view, two things of one class are never at the very same place.
+    pub(super) fn repeats(&self, other: &Self) -> bool {
+        self.class == other.class && self.position == other.position
     }
 }
 

@@ -80,7 +80,7 @@ impl Look<'_> {
         let mut truth = Vec::new();
         for (index, thing) in things.iter().enumerate() {
             let place = thing.places[self.day];
-            if !region.holds(Position::new(place)?, 0.0) {
+            if !region.holds(place, 0.0) {
                 continue;
             }
             if !happens(self.plan.missed, generator) {

@@ -1,0 +1,3 @@
+//! The map on the simulated tour.
+
+mod judged;
