@@ -43,7 +43,7 @@ impl SemanticMap {
 
     fn merge(&mut self, id: EntryId, other: EntryId) {
         let (Some(mut entry), Some(other)) = (self.withdraw(id), self.withdraw(other)) else { return };
-        self.undecided.remove(&other.id);
+        self.state.undecided.remove(&other.id);
         self.rename(other.id, id, &other.sightings);
         self.state.history.push(Change::Merged { entry: id, other: other.id });
         entry.merge(other);

@@ -114,6 +114,8 @@ pub struct MapState {
     pub views: BTreeMap<ViewId, BTreeSet<EntryId>>,
     /// Moves, merges and splits, in the order in which they were found.
     pub history: Vec<Change>,
+    /// Entries that may be one of several missing things; they are looked at again when one of their class is seen.
+    pub undecided: BTreeSet<EntryId>,
     /// How many ids were given to entries so far.
     pub entries_so_far: u64,
     /// How many ids were given to sightings so far.
@@ -128,23 +130,14 @@ pub struct SemanticMap {
     grid: Grid,
     /// The entries that enough views have confirmed, by class.
     confirmed: BTreeMap<ClassLabel, BTreeSet<EntryId>>,
-    /// Entries that may be one of several things that are missing.
-    undecided: BTreeSet<EntryId>,
 }
 
 impl SemanticMap {
     /// A map that goes on from what one remembered.
     pub fn new(mut state: MapState, parameters: MapParameters) -> Self {
         let entries = std::mem::take(&mut state.entries);
-        let mut map = Self {
-            state,
-            parameters,
-            grid: Grid::default(),
-            confirmed: BTreeMap::new(),
-            undecided: BTreeSet::new(),
-        };
+        let mut map = Self { state, parameters, grid: Grid::default(), confirmed: BTreeMap::new() };
         for entry in entries.into_values() {
-            map.undecided.insert(entry.id);
             map.enter(entry);
         }
         map

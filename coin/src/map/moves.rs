@@ -62,7 +62,7 @@ enum Origin {
 impl SemanticMap {
     /// The newcomers that may be one of several missing things, each with these things.
     pub fn perhaps_moved(&self) -> Vec<PerhapsMoved> {
-        let waiting = self.undecided.iter().filter_map(|id| self.state.entries.get(id));
+        let waiting = self.state.undecided.iter().filter_map(|id| self.state.entries.get(id));
         waiting
             .filter(|newcomer| matches!(self.origin(newcomer), Origin::Undecided))
             .map(|newcomer| PerhapsMoved {
@@ -103,13 +103,13 @@ impl SemanticMap {
             let Some(entry) = self.state.entries.get(&newcomer) else { continue };
             match self.origin(entry) {
                 Origin::New => {
-                    self.undecided.remove(&newcomer);
+                    self.state.undecided.remove(&newcomer);
                 }
                 Origin::Undecided => {
-                    self.undecided.insert(newcomer);
+                    self.state.undecided.insert(newcomer);
                 }
                 Origin::Known(entry) => {
-                    self.undecided.remove(&newcomer);
+                    self.state.undecided.remove(&newcomer);
                     self.reunite(entry, newcomer);
                 }
             }
@@ -128,8 +128,8 @@ impl SemanticMap {
             news.seen.union(&news.gone).filter_map(entry).filter_map(Entry::class).collect();
         let waits =
             |id: &&EntryId| entry(id).and_then(Entry::class).is_some_and(|class| classes.contains(class));
-        if !self.undecided.is_empty() {
-            newcomers.extend(self.undecided.iter().filter(waits));
+        if !self.state.undecided.is_empty() {
+            newcomers.extend(self.state.undecided.iter().filter(waits));
         }
         newcomers
     }

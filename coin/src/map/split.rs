@@ -58,7 +58,7 @@ impl SemanticMap {
         self.state.entries_so_far += 1;
         self.withdraw(id);
         self.rename(id, into, &taken.sightings);
-        self.undecided.remove(&id);
+        self.state.undecided.remove(&id);
         self.enter(left);
         self.enter(taken);
         self.state.history.push(Change::Split { entry: id, into, sightings: sightings.clone() });
