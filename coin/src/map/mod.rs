@@ -13,6 +13,23 @@
 //! two views, nothing in position or look shows it: each entry goes on with the other's thing. Only a person, or how the things
 //! are used, can tell.
 
+//!
+//! # Where it breaks
+//!
+//! On four simulated tours ([`tour::Plan::default`], seeds 1000 to 1003) with one standard deviation of the position on
+//! every axis. False detections, 2 % of all, count against the map and alone cost 1 % of IDF1.
+//!
+//! | noise, cm | IDF1 | moved things that kept their id | pairs merged or swapped, of 80 |
+//! |---|---|---|---|
+//! | 2 to 4 | .987 | 85 of 89 | 0 |
+//! | 5 | .985 | 85 of 89 | 0 |
+//! | 6 | .982 | 84 of 89 | 1 |
+//! | 8 | .958 | 78 of 89 | 2 |
+//! | 10 | .906 | 68 of 89 | 7 |
+//! | 12 | .818 | 49 of 89 | 6 |
+//! | 15 | .686 | 36 of 89 | 10 |
+//! | 20 | .487 | 14 of 89 | 20 |
+
 pub mod association;
 pub mod detection;
 pub mod entry;

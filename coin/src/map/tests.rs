@@ -6,6 +6,7 @@ mod judged;
 mod moving;
 mod remembering;
 mod splitting;
+mod throughput;
 
 use std::collections::BTreeSet;
 

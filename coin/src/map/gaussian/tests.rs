@@ -6,7 +6,7 @@ use super::*;
 
 fn any_gaussian() -> impl Strategy<Value = Gaussian> {
     ([-0.5..0.5_f64, -0.5..0.5, -0.5..0.5], 0.003..0.1_f64)
-        .prop_map(|(mean, variance)| Gaussian { mean: mean.into(), variance })
+        .prop_map(|(mean, variance)| Gaussian { mean, variance })
 }
 
 fn log_density(at: f64, mean: f64, variance: f64) -> f64 {

@@ -26,8 +26,10 @@ fn any_home() -> impl Strategy<Value = Vec<View>> {
     })
 }
 
+type MadeOf = Vec<(ViewId, [f64; 3])>;
+
 /// The entries, each with the views and places that it was made from, in the order of their places.
-fn partition(map: &SemanticMap) -> Vec<(Vec<(ViewId, [f64; 3])>, &Entry)> {
+fn partition(map: &SemanticMap) -> Vec<(MadeOf, &Entry)> {
     let mut parts: Vec<_> = map
         .state()
         .entries

@@ -16,9 +16,10 @@ pub struct TourScores {
     /// How many of them have most of their detections of the first day and most of those of the second in one entry, and
     /// so kept their id and their owner.
     pub kept: usize,
-    /// Pairs of things, of different people, whose detections of a day are mostly in one entry: on the same day, or the
-    /// one's first day with the other's second.
+    /// Pairs of things of different people that have most of their detections of one day in one entry.
     pub merged: Vec<(usize, usize)>,
+    /// Pairs of things of different people where the entry of the one's first day is that of the other's second.
+    pub swapped: Vec<(usize, usize)>,
 }
 
 /// Judges the entry in which each detection of each view ended.
@@ -31,24 +32,25 @@ pub fn judge<E: Ord + Copy>(tour: &Tour, entries: &[Vec<Option<E>>]) -> TourScor
     ];
     let moved: Vec<usize> = (0..tour.things.len()).filter(|&thing| tour.things[thing].moved()).collect();
     let kept = |thing: &&usize| homes[0][**thing].is_some() && homes[0][**thing] == homes[1][**thing];
-    let mut merged = Vec::new();
-    for one in 0..tour.things.len() {
-        for other in one + 1..tour.things.len() {
-            let together = |day: usize, other_day: usize| {
+    let pairs =
+        (0..tour.things.len()).flat_map(|one| (one + 1..tour.things.len()).map(move |other| (one, other)));
+    let of_two_people: Vec<(usize, usize)> =
+        pairs.filter(|&(one, other)| tour.things[one].owner != tour.things[other].owner).collect();
+    let together = |days: [(usize, usize); 2]| {
+        let is_shared = |&(one, other): &(usize, usize)| {
+            let in_one = |(day, other_day): (usize, usize)| {
                 homes[day][one].is_some() && homes[day][one] == homes[other_day][other]
             };
-            let days = [(0, 0), (0, 1), (1, 0), (1, 1)];
-            let two_people = tour.things[one].owner != tour.things[other].owner;
-            if two_people && days.into_iter().any(|(day, other_day)| together(day, other_day)) {
-                merged.push((one, other));
-            }
-        }
-    }
+            days.into_iter().any(in_one)
+        };
+        of_two_people.iter().copied().filter(is_shared).collect()
+    };
     TourScores {
         identities: identity_scores(&detections),
         kept: moved.iter().filter(kept).count(),
         moved: moved.len(),
-        merged,
+        merged: together([(0, 0), (1, 1)]),
+        swapped: together([(0, 1), (1, 0)]),
     }
 }
 

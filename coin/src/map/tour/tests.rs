@@ -70,7 +70,7 @@ fn the_truth_scores_one_but_for_what_does_not_exist() {
     let tour = tour(&Plan::default(), 5);
     let scores = judge(&tour, &perfect(&tour));
     assert_eq!(scores.identities.f1(), 1.0);
-    assert_eq!((scores.kept, &scores.merged), (scores.moved, &vec![]));
+    assert_eq!((scores.kept, &scores.merged, &scores.swapped), (scores.moved, &vec![], &vec![]));
 }
 
 #[test]
