@@ -6,6 +6,7 @@
 //! Questioning* (Hashimoto et al.); each stands in one function that names it.
 
 pub mod agent;
+pub mod assignment;
 pub mod baselines;
 pub mod calibration;
 pub mod captions;
@@ -15,6 +16,7 @@ pub mod dialogue;
 pub mod evidence;
 pub mod gate;
 mod language;
+pub mod map;
 pub mod metrics;
 pub mod owners;
 pub mod referring;

@@ -1,4 +1,6 @@
-//! The paper's metrics (Appendix E).
+//! The paper's metrics (Appendix E), and that of the map: [`identity`].
+
+pub mod identity;
 
 use coin_schemas::report::MetricsSummary;
 
