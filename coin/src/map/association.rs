@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::SemanticMap;
-use super::detection::Sighting;
+use super::detection::Seen;
 use super::entry::{Entry, EntryId};
 use super::gaussian::{Gaussian, jeffreys};
 use super::parameters::MapParameters;
@@ -13,24 +13,26 @@ use crate::assignment::least_cost;
 ///
 /// Appearance decides where both are known: it can tell a red cup from a blue one that stood there before, and a mug
 /// from what the detector calls it this time. Else the class decides: any class that the thing was given before.
-pub fn agrees(entry: &Entry, sighting: &Sighting, parameters: &MapParameters) -> bool {
-    match (&entry.look, &sighting.feature) {
+pub fn agrees(entry: &Entry, seen: &Seen, parameters: &MapParameters) -> bool {
+    match (&entry.look, &seen.feature) {
         (Some(look), Some(feature)) => look.cosine(feature) >= parameters.same_look,
-        _ => entry.classes.contains_key(&sighting.class),
+        _ => entry.classes.contains_key(&seen.sighting.class),
     }
 }
 
 /// The divergence between a sighting and an entry, if the one may be of the other.
-fn divergence(entry: &Entry, sighting: &Sighting, parameters: &MapParameters) -> Option<f64> {
-    let seen = Gaussian { mean: sighting.position.metres(), variance: parameters.spread * sighting.radius };
-    let divergence = jeffreys(&seen, &entry.place.gaussian(parameters.spread));
+fn divergence(entry: &Entry, seen: &Seen, parameters: &MapParameters) -> Option<f64> {
+    let sighting = &seen.sighting;
+    let gaussian =
+        Gaussian { mean: sighting.position.metres(), variance: parameters.spread * sighting.radius };
+    let divergence = jeffreys(&gaussian, &entry.place.gaussian(parameters.spread));
     // A sighting from before the last move is none of where the thing is now.
     let is_of_this_place = entry.settled().is_none_or(|settled| sighting.at >= settled);
-    (divergence < parameters.largest_divergence && is_of_this_place && agrees(entry, sighting, parameters))
+    (divergence < parameters.largest_divergence && is_of_this_place && agrees(entry, seen, parameters))
         .then_some(divergence)
 }
 
-/// The entry of each sighting of one view, `None` for what is new. No entry gets two of them, and none of `taken`,
+/// The entry of each sighting of one view, with the divergence from it; `None` for what is new. No entry gets two of them, and none of `taken`,
 /// which this view has shown already, gets one.
 ///
 /// The sum of the divergences is least, where a sighting without an entry counts as much as the largest divergence that is
@@ -38,9 +40,9 @@ fn divergence(entry: &Entry, sighting: &Sighting, parameters: &MapParameters) ->
 /// one was taken away, and the other must not be seen as now the one, now the other.
 pub(super) fn associate(
     map: &SemanticMap,
-    sightings: &[&Sighting],
+    sightings: &[&Seen],
     taken: &BTreeSet<EntryId>,
-) -> Vec<Option<EntryId>> {
+) -> Vec<Option<(EntryId, f64)>> {
     let is_gone = |id: &EntryId| map.state.entries.get(id).is_some_and(|entry| map.is_gone(entry));
     let (gone, present): (Vec<_>, Vec<_>) = sightings
         .iter()
@@ -60,7 +62,7 @@ pub(super) fn associate(
 
 /// The assignment with the least divergence in all. Groups of sightings that share no possible entry are solved one by one,
 /// so a view costs little more than its crowded corners.
-fn assign(possible: &[BTreeMap<EntryId, f64>], worst: f64) -> Vec<Option<EntryId>> {
+fn assign(possible: &[BTreeMap<EntryId, f64>], worst: f64) -> Vec<Option<(EntryId, f64)>> {
     let mut assigned = vec![None; possible.len()];
     for group in groups(possible) {
         let entries: BTreeSet<EntryId> =
@@ -70,22 +72,23 @@ fn assign(possible: &[BTreeMap<EntryId, f64>], worst: f64) -> Vec<Option<EntryId
         let costs: Vec<Vec<f64>> =
             group.iter().map(|&row| entries.iter().map(|entry| cost(row, entry)).collect()).collect();
         for (&row, column) in group.iter().zip(least_cost(&costs, worst)) {
-            assigned[row] = column.map(|column| entries[column]);
+            let entry = column.map(|column| entries[column]);
+            assigned[row] = entry.and_then(|entry| Some((entry, *possible[row].get(&entry)?)));
         }
     }
     assigned
 }
 
-fn candidates(map: &SemanticMap, sighting: &Sighting, taken: &BTreeSet<EntryId>) -> BTreeMap<EntryId, f64> {
-    let reach = map.parameters.reach(sighting.radius);
-    let middle = sighting.position.metres();
+fn candidates(map: &SemanticMap, seen: &Seen, taken: &BTreeSet<EntryId>) -> BTreeMap<EntryId, f64> {
+    let reach = map.parameters.reach(seen.sighting.radius);
+    let middle = seen.sighting.position.metres();
     map.grid
         .around(middle.map(|metres| metres - reach), middle.map(|metres| metres + reach))
         .into_iter()
         .filter(|id| !taken.contains(id))
         .filter_map(|id| {
             let entry = map.state.entries.get(&id)?;
-            divergence(entry, sighting, &map.parameters).map(|divergence| (id, divergence))
+            divergence(entry, seen, &map.parameters).map(|divergence| (id, divergence))
         })
         .collect()
 }

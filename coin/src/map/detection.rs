@@ -94,7 +94,7 @@ pub enum Refusal {
     },
 }
 
-/// A detection that was checked: finite position, positive radius, feature of length 1.
+/// A detection that was checked: finite position, positive radius.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sighting {
     /// What the detector calls the thing.
@@ -107,12 +107,22 @@ pub struct Sighting {
     pub at: DateTime,
     /// The view that it is from.
     pub view: Option<ViewId>,
+}
+
+/// A sighting with what it looked like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    /// What was seen.
+    pub sighting: Sighting,
     /// What it looks like, at length 1.
     pub feature: Option<Vec<f32>>,
 }
 
-impl Sighting {
+impl Seen {
     /// Checks a detection; `dimension` is that of the map's features.
+    ///
+    /// # Errors
+    /// What is wrong with the detection.
     pub fn check(detection: &Detection, view: &View, dimension: usize) -> Result<Self, Refusal> {
         let Detection { class, position, radius, at, feature } = detection;
         let place = Position::new(*position).map_err(|_| Refusal::Position { given: *position })?;
@@ -123,16 +133,18 @@ impl Sighting {
             return Err(Refusal::Future { at: *at, taken_at: view.taken_at });
         }
         let feature = feature.as_deref().map(|feature| direction(feature, dimension)).transpose()?;
-        Ok(Self {
+        let sighting = Sighting {
             class: class.clone(),
             position: place,
             radius: *radius,
             at: *at,
             view: view.id.clone(),
-            feature,
-        })
+        };
+        Ok(Self { sighting, feature })
     }
+}
 
+impl Sighting {
     /// Whether this is the same detection again: of one view, two things of one class are never at the very same place.
     pub(super) fn repeats(&self, other: &Self) -> bool {
         self.class == other.class && self.position == other.position

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use coin_schemas::household::ClassLabel;
 use jiff::civil::DateTime;
 
-use super::detection::Sighting;
+use super::detection::{Seen, Sighting};
 use super::gaussian::Gaussian;
 use super::look::Look;
 
@@ -90,64 +90,68 @@ pub struct Entry {
     pub told_apart: BTreeSet<EntryId>,
     /// Every sighting it was made from, each of another view.
     pub sightings: BTreeMap<SightingId, Sighting>,
+    /// What a person or a recording calls the thing, whatever the detector says; `None` where it was only ever detected.
+    pub recorded: Option<ClassLabel>,
 }
+
+/// Several sightings, with what they looked like as far as that is known.
+pub(super) type Sightings = BTreeMap<SightingId, Seen>;
 
 impl Entry {
     /// An entry of one sighting.
-    pub(super) fn new(id: EntryId, number: SightingId, sighting: Sighting) -> Self {
+    pub(super) fn new(id: EntryId, number: SightingId, seen: Seen) -> Self {
+        let Seen { sighting, feature } = seen;
         let weight = sighting.radius.recip();
         Self {
             id,
             classes: BTreeMap::from([(sighting.class.clone(), 1)]),
             place: Place::new(&sighting),
-            look: sighting.feature.as_deref().map(|feature| Look::new(feature, weight)),
+            look: feature.as_deref().map(|feature| Look::new(feature, weight)),
             first_seen: sighting.at,
             last_seen: sighting.at,
             absences: 0,
             moves: Vec::new(),
             told_apart: BTreeSet::new(),
             sightings: BTreeMap::from([(number, sighting)]),
+            recorded: None,
         }
     }
 
     /// The entry that some sightings make; `None` where there are none. Of `moves` those stay that have sightings
     /// before and after them.
-    pub(super) fn from_sightings(
-        id: EntryId,
-        sightings: BTreeMap<SightingId, Sighting>,
-        moves: &[Move],
-    ) -> Option<Self> {
+    pub(super) fn from_sightings(id: EntryId, sightings: Sightings, moves: &[Move]) -> Option<Self> {
         let is_between = |moved: &&Move| {
-            sightings.values().any(|sighting| sighting.at < moved.at)
-                && sightings.values().any(|sighting| sighting.at >= moved.at)
+            sightings.values().any(|seen| seen.sighting.at < moved.at)
+                && sightings.values().any(|seen| seen.sighting.at >= moved.at)
         };
         let moves: Vec<Move> = moves.iter().filter(is_between).copied().collect();
         let settled = moves.last().map(|moved| moved.at);
         let (before, after): (BTreeMap<_, _>, BTreeMap<_, _>) = sightings
             .into_iter()
-            .partition(|(_, sighting)| settled.is_some_and(|settled| sighting.at < settled));
+            .partition(|(_, seen)| settled.is_some_and(|settled| seen.sighting.at < settled));
         let mut current = after.into_iter();
-        let (number, sighting) = current.next()?;
-        let mut entry = Self { moves, ..Self::new(id, number, sighting) };
-        for (number, sighting) in current {
-            entry.join(number, sighting);
+        let (number, seen) = current.next()?;
+        let mut entry = Self { moves, ..Self::new(id, number, seen) };
+        for (number, seen) in current {
+            entry.join(number, seen);
         }
-        for (number, sighting) in before {
-            entry.remember(number, sighting);
+        for (number, seen) in before {
+            entry.remember(number, seen);
         }
         Some(entry)
     }
 
     /// Takes in a sighting of the thing where it is.
-    pub(super) fn join(&mut self, number: SightingId, sighting: Sighting) {
-        self.place.absorb(&Place::new(&sighting));
-        self.remember(number, sighting);
+    pub(super) fn join(&mut self, number: SightingId, seen: Seen) {
+        self.place.absorb(&Place::new(&seen.sighting));
+        self.remember(number, seen);
     }
 
     /// Takes in all of a sighting but its place.
-    fn remember(&mut self, number: SightingId, sighting: Sighting) {
+    fn remember(&mut self, number: SightingId, seen: Seen) {
+        let Seen { sighting, feature } = seen;
         *self.classes.entry(sighting.class.clone()).or_default() += 1;
-        if let Some(feature) = &sighting.feature {
+        if let Some(feature) = &feature {
             let weight = sighting.radius.recip();
             match &mut self.look {
                 Some(look) => look.add(feature, weight),
@@ -180,6 +184,7 @@ impl Entry {
         self.first_seen = self.first_seen.min(other.first_seen);
         self.last_seen = self.last_seen.max(other.last_seen);
         self.told_apart.extend(other.told_apart);
+        self.recorded = self.recorded.take().or(other.recorded);
         for (class, votes) in other.classes {
             *self.classes.entry(class).or_default() += votes;
         }
@@ -196,8 +201,11 @@ impl Entry {
         self.told_apart.contains(&other.id) || other.told_apart.contains(&self.id)
     }
 
-    /// The class that most sightings gave; of equally many the first by name.
+    /// The class that was recorded, or else that most sightings gave; of equally many the first by name.
     pub fn class(&self) -> Option<&ClassLabel> {
+        if self.recorded.is_some() {
+            return self.recorded.as_ref();
+        }
         self.classes.iter().rev().max_by_key(|(_, votes)| **votes).map(|(class, _)| class)
     }
 

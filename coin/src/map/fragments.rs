@@ -45,7 +45,7 @@ impl SemanticMap {
         let (Some(mut entry), Some(other)) = (self.withdraw(id), self.withdraw(other)) else { return };
         self.state.undecided.remove(&other.id);
         self.rename(other.id, id, &other.sightings);
-        self.state.history.push(Change::Merged { entry: id, other: other.id });
+        self.history.push(Change::Merged { entry: id, other: other.id });
         entry.merge(other);
         self.enter(entry);
     }

@@ -47,7 +47,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use coin_schemas::household::ClassLabel;
 
 use association::associate;
-use detection::{Refusal, Sighting, View, ViewId};
+use detection::{Refusal, Seen, Sighting, View, ViewId};
 use entry::{Entry, EntryId, SightingId};
 use grid::Grid;
 pub use moves::{Moved, PerhapsMoved};
@@ -68,6 +68,8 @@ pub enum Outcome {
     Joined {
         /// The entry.
         entry: EntryId,
+        /// The Jeffreys divergence from what the entry was before, in nats.
+        divergence: f64,
         /// The id that it got.
         sighting: SightingId,
     },
@@ -129,8 +131,6 @@ pub struct MapState {
     pub entries: BTreeMap<EntryId, Entry>,
     /// Which entries each view showed; a view may have shown none.
     pub views: BTreeMap<ViewId, BTreeSet<EntryId>>,
-    /// Moves, merges and splits, in the order in which they were found.
-    pub history: Vec<Change>,
     /// Entries that may be one of several missing things; they are looked at again when one of their class is seen.
     pub undecided: BTreeSet<EntryId>,
     /// How many ids were given to entries so far.
@@ -147,17 +147,51 @@ pub struct SemanticMap {
     grid: Grid,
     /// The entries that enough views have confirmed, by class.
     confirmed: BTreeMap<ClassLabel, BTreeSet<EntryId>>,
+    /// The entries that were made, changed or withdrawn since it was last asked.
+    changed: BTreeSet<EntryId>,
+    history: Vec<Change>,
+}
+
+/// What happened to a map since it was last asked.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct News {
+    /// Moves, merges and splits, in the order in which they were found.
+    pub history: Vec<Change>,
+    /// The entries that were made, changed or withdrawn.
+    pub changed: BTreeSet<EntryId>,
 }
 
 impl SemanticMap {
     /// A map that goes on from what one remembered.
     pub fn new(mut state: MapState, parameters: MapParameters) -> Self {
         let entries = std::mem::take(&mut state.entries);
-        let mut map = Self { state, parameters, grid: Grid::default(), confirmed: BTreeMap::new() };
+        let mut map = Self {
+            state,
+            parameters,
+            grid: Grid::default(),
+            confirmed: BTreeMap::new(),
+            changed: BTreeSet::new(),
+            history: Vec::new(),
+        };
         for entry in entries.into_values() {
             map.enter(entry);
         }
+        map.changed.clear();
         map
+    }
+
+    /// What happened since this was last called, for a store that follows the map.
+    pub fn news(&mut self) -> News {
+        News { history: std::mem::take(&mut self.history), changed: std::mem::take(&mut self.changed) }
+    }
+
+    /// Enters a thing that is known without having been detected, under an id of the caller's. It counts as one
+    /// sighting. Ids up to this one are given to nothing else.
+    pub fn record(&mut self, id: EntryId, seen: Seen) {
+        let number = self.next_sighting();
+        let recorded = Some(seen.sighting.class.clone());
+        self.state.entries_so_far = self.state.entries_so_far.max(id.0 + 1);
+        self.enter(Entry { recorded, ..Entry::new(id, number, seen) });
     }
 
     /// What there is to remember.
@@ -176,27 +210,28 @@ impl SemanticMap {
         let known = view.id.as_ref().and_then(|id| self.state.views.get(id)).cloned();
         let mut outcomes: Vec<Option<Outcome>> = vec![None; view.detections.len()];
         let mut repeats: Vec<(usize, usize)> = Vec::new();
-        let mut fresh: Vec<(usize, Sighting)> = Vec::new();
+        let mut fresh: Vec<(usize, Seen)> = Vec::new();
         for (index, detection) in view.detections.iter().enumerate() {
-            match Sighting::check(detection, view, self.parameters.dimension) {
+            match Seen::check(detection, view, self.parameters.dimension) {
                 Err(refusal) => outcomes[index] = Some(Outcome::Refused(refusal)),
-                Ok(sighting) => {
-                    if let Some(entry) = self.holder(&sighting, known.as_ref()) {
+                Ok(seen) => {
+                    let is_first = |(_, other): &&(usize, Seen)| seen.sighting.repeats(&other.sighting);
+                    if let Some(entry) = self.holder(&seen.sighting, known.as_ref()) {
                         outcomes[index] = Some(Outcome::Repeated { entry });
-                    } else if let Some((first, _)) = fresh.iter().find(|(_, other)| sighting.repeats(other)) {
+                    } else if let Some((first, _)) = fresh.iter().find(is_first) {
                         repeats.push((index, *first));
                     } else {
-                        fresh.push((index, sighting));
+                        fresh.push((index, seen));
                     }
                 }
             }
         }
         let taken = known.clone().unwrap_or_default();
-        let sightings: Vec<&Sighting> = fresh.iter().map(|(_, sighting)| sighting).collect();
+        let sightings: Vec<&Seen> = fresh.iter().map(|(_, seen)| seen).collect();
         let entries = associate(self, &sightings, &taken);
         let mut news = moves::News::default();
-        for ((index, sighting), entry) in fresh.into_iter().zip(entries) {
-            outcomes[index] = Some(self.take_in(sighting, entry, &mut news));
+        for ((index, seen), entry) in fresh.into_iter().zip(entries) {
+            outcomes[index] = Some(self.take_in(seen, entry, &mut news));
         }
         for (index, first) in repeats {
             let entry = outcomes[first].as_ref().and_then(Outcome::entry);
@@ -208,10 +243,10 @@ impl SemanticMap {
         if known.is_none() {
             self.count_absences(view, &mut news);
         }
-        let before = self.state.history.len();
+        let before = self.history.len();
         self.join_fragments(&news.gone);
         self.follow_moves(&news);
-        let changes = self.state.history[before..].to_vec();
+        let changes = self.history[before..].to_vec();
         Observed { outcomes: outcomes.into_iter().flatten().collect(), changes }
     }
 
@@ -225,20 +260,19 @@ impl SemanticMap {
         known?.iter().find(has).copied()
     }
 
-    fn take_in(&mut self, sighting: Sighting, entry: Option<EntryId>, news: &mut moves::News) -> Outcome {
-        let number = SightingId(self.state.sightings_so_far);
-        self.state.sightings_so_far += 1;
-        let withdrawn = entry.and_then(|id| self.withdraw(id));
-        let is_new = withdrawn.is_none();
+    fn take_in(&mut self, seen: Seen, joined: Option<(EntryId, f64)>, news: &mut moves::News) -> Outcome {
+        let number = self.next_sighting();
+        let withdrawn = joined.and_then(|(id, divergence)| Some((self.withdraw(id)?, divergence)));
+        let divergence = withdrawn.as_ref().map(|(_, divergence)| *divergence);
         let (entry, is_reclassified) = match withdrawn {
-            Some(mut entry) => {
+            Some((mut entry, _)) => {
                 let class = entry.class().cloned();
-                entry.join(number, sighting);
+                entry.join(number, seen);
                 entry.absences = 0;
                 let is_reclassified = entry.class() != class.as_ref();
                 (entry, is_reclassified)
             }
-            None => (Entry::new(self.next_entry(), number, sighting), false),
+            None => (Entry::new(self.next_entry(), number, seen), false),
         };
         let id = entry.id;
         news.seen.insert(id);
@@ -246,11 +280,16 @@ impl SemanticMap {
             news.confirmed.insert(id);
         }
         self.enter(entry);
-        if is_new {
-            Outcome::New { entry: id, sighting: number }
-        } else {
-            Outcome::Joined { entry: id, sighting: number }
+        match divergence {
+            None => Outcome::New { entry: id, sighting: number },
+            Some(divergence) => Outcome::Joined { entry: id, divergence, sighting: number },
         }
+    }
+
+    fn next_sighting(&mut self) -> SightingId {
+        let number = SightingId(self.state.sightings_so_far);
+        self.state.sightings_so_far += 1;
+        number
     }
 
     fn next_entry(&mut self) -> EntryId {
@@ -260,11 +299,12 @@ impl SemanticMap {
     }
 
     fn is_confirmed(&self, entry: &Entry) -> bool {
-        entry.views() >= self.parameters.confirming_views
+        entry.recorded.is_some() || entry.views() >= self.parameters.confirming_views
     }
 
     /// Puts an entry into the map and its indexes.
     fn enter(&mut self, entry: Entry) {
+        self.changed.insert(entry.id);
         self.grid.insert(entry.id, entry.place.position);
         if let (true, Some(class)) = (self.is_confirmed(&entry), entry.class()) {
             self.confirmed.entry(class.clone()).or_default().insert(entry.id);
@@ -275,6 +315,7 @@ impl SemanticMap {
     /// Takes an entry out of the map and its indexes.
     fn withdraw(&mut self, id: EntryId) -> Option<Entry> {
         let entry = self.state.entries.remove(&id)?;
+        self.changed.insert(id);
         self.grid.remove(id, entry.place.position);
         if let Some(of_class) = entry.class().and_then(|class| self.confirmed.get_mut(class)) {
             of_class.remove(&id);

@@ -90,6 +90,7 @@ impl SemanticMap {
             let is_inside = view.covered.iter().any(|region| region.holds(entry.place.position, deviation));
             if is_inside && view.taken_at > entry.last_seen {
                 entry.absences += 1;
+                self.changed.insert(*id);
                 if entry.absences == self.parameters.absences {
                     news.gone.insert(*id);
                 }
@@ -103,10 +104,14 @@ impl SemanticMap {
             let Some(entry) = self.state.entries.get(&newcomer) else { continue };
             match self.origin(entry) {
                 Origin::New => {
-                    self.state.undecided.remove(&newcomer);
+                    if self.state.undecided.remove(&newcomer) {
+                        self.changed.insert(newcomer);
+                    }
                 }
                 Origin::Undecided => {
-                    self.state.undecided.insert(newcomer);
+                    if self.state.undecided.insert(newcomer) {
+                        self.changed.insert(newcomer);
+                    }
                 }
                 Origin::Known(entry) => {
                     self.state.undecided.remove(&newcomer);
@@ -190,7 +195,7 @@ impl SemanticMap {
         self.rename(newcomer.id, id, &newcomer.sightings);
         entry.move_to(newcomer);
         self.enter(entry);
-        self.state.history.push(Change::Moved(moved));
+        self.history.push(Change::Moved(moved));
     }
 
     /// Notes that these sightings are in another entry.

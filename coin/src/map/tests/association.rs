@@ -11,13 +11,11 @@ fn what_is_seen_again_joins_and_what_is_elsewhere_is_new() {
     let mut map = map();
     map.observe(&view(0, vec![cup([0.0; 3])]));
     let outcomes = map.observe(&view(1, vec![cup([0.06, 0.0, 0.0]), cup([1.0, 0.0, 0.0])])).outcomes;
-    assert_eq!(
-        outcomes,
-        [
-            Outcome::Joined { entry: EntryId(0), sighting: SightingId(1) },
-            Outcome::New { entry: EntryId(1), sighting: SightingId(2) }
-        ]
-    );
+    let Outcome::Joined { entry, divergence, sighting } = outcomes[0] else { panic!("{outcomes:?}") };
+    assert_eq!((entry, sighting), (EntryId(0), SightingId(1)));
+    // Of two Gaussians of one variance α r, it is |Δ|² / α r.
+    assert!((divergence - 0.06 * 0.06 / (0.15 * CUP)).abs() < 1e-12, "{divergence}");
+    assert_eq!(outcomes[1], Outcome::New { entry: EntryId(1), sighting: SightingId(2) });
 }
 
 /// Nine centimetres apart they touch, and one divergence alone would join them.

@@ -3,6 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::map::detection::Sighting;
+use crate::similarity::normalise;
 
 /// Rounding of sums of a few dozen numbers of the size of a home.
 const ROUNDING: f64 = 1e-9;
@@ -46,6 +48,13 @@ fn partition(map: &SemanticMap) -> Vec<(MadeOf, &Entry)> {
         .collect();
     parts.sort_by(|left, right| left.1.place.position[0].total_cmp(&right.1.place.position[0]));
     parts
+}
+
+/// What was detected in the view of a sighting at its place, at length 1.
+fn look_of(views: &[View], sighting: &Sighting) -> Vec<f32> {
+    let view = views.iter().find(|view| view.id == sighting.view).unwrap();
+    let at_place = |detection: &&Detection| detection.position == sighting.position.metres();
+    normalise(view.detections.iter().find(at_place).unwrap().feature.as_ref().unwrap()).unwrap()
 }
 
 proptest! {
@@ -92,8 +101,10 @@ proptest! {
                 prop_assert!((entry.place.position[axis] - sum / weights).abs() < ROUNDING);
             }
             prop_assert!((entry.place.radius() - entry.views() as f64 / weights).abs() < ROUNDING);
+            let features: Vec<(Vec<f32>, f64)> =
+                entry.sightings.values().map(|sighting| (look_of(&views, sighting), sighting.radius)).collect();
             let mean: Vec<f64> = (0..4)
-                .map(|axis| entry.sightings.values().map(|s| f64::from(s.feature.as_ref().unwrap()[axis]) / s.radius).sum())
+                .map(|axis| features.iter().map(|(feature, radius)| f64::from(feature[axis]) / radius).sum())
                 .collect();
             let length = mean.iter().map(|component| component * component).sum::<f64>().sqrt();
             for (component, fused) in mean.iter().zip(entry.look.as_ref().unwrap().feature().unwrap()) {

@@ -24,7 +24,7 @@ fn a_thing_that_is_moved_keeps_its_id() {
     assert_eq!(all_ids(&map), [0]);
     let moved =
         Moved { entry: EntryId(0), newcomer: EntryId(1), from: [0.0; 3], to: [4.0, 0.0, 0.0], at: clock(10) };
-    assert_eq!(map.state().history, [Change::Moved(moved)]);
+    assert_eq!(map.news().history, [Change::Moved(moved)]);
     assert_eq!((entry(&map, 0).place.position, entry(&map, 0).views()), ([4.0, 0.0, 0.0], 6));
     show(&mut map, 13..14, &[4.0, 0.0]);
     assert_eq!(all_ids(&map), [0, 2], "what stands at the old place now is something else");
@@ -106,7 +106,7 @@ fn a_swap_of_equal_cups_cannot_be_told_and_one_of_different_cups_can() {
     show(&mut map, 0..3, &[0.0, 2.0]);
     show(&mut map, 3..9, &[2.0, 0.0]);
     assert_eq!(all_ids(&map), [0, 1]);
-    assert_eq!(map.state().history, []);
+    assert_eq!(map.news().history, []);
 
     let mut map = super::map();
     let blue_cup = |x: f64| looking(cup([x, 0.0, 0.0]), BLUE);
@@ -138,6 +138,6 @@ fn fragments_of_a_thing_are_joined() {
     assert_eq!(all_ids(&map), [0, 1]);
     show(&mut map, 2..10, &[0.05]);
     assert_eq!(all_ids(&map), [0]);
-    assert_eq!(map.state().history, [Change::Merged { entry: EntryId(0), other: EntryId(1) }]);
+    assert_eq!(map.news().history, [Change::Merged { entry: EntryId(0), other: EntryId(1) }]);
     assert_eq!(entry(&map, 0).views(), 10);
 }

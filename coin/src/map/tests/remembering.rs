@@ -18,7 +18,7 @@ fn a_map_goes_on_from_its_state() {
         interrupted = SemanticMap::new(interrupted.state().clone(), parameters);
         assert_eq!(interrupted.observe(view), observed);
     }
-    assert!(!whole.state().history.is_empty());
+    assert!(!whole.news().history.is_empty());
     assert_eq!(interrupted.state(), whole.state());
     assert_eq!(interrupted.perhaps_moved(), whole.perhaps_moved());
 }
