@@ -8,6 +8,8 @@ use std::collections::{BTreeMap, VecDeque};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use coin::agent::{Inference, Parts};
 use coin::owners::{DistributionError, OwnerSetDistribution};
@@ -19,6 +21,12 @@ use thiserror::Error;
 
 /// What is added to the name of the database.
 const SUFFIX: &str = ".run.jsonl";
+
+/// How long a run that is just ending is waited for. A program that is being started holds its parent's locks for a moment.
+const LOCK_PATIENCE: Duration = Duration::from_millis(500);
+
+/// How often it is looked whether it has ended.
+const LOOK_EVERY: Duration = Duration::from_millis(10);
 
 /// Why a journal cannot be used.
 #[derive(Debug, Error)]
@@ -120,6 +128,16 @@ pub enum Beginning {
     WhereItEnded,
 }
 
+fn lock(file: &File) -> Result<(), TryLockError> {
+    let deadline = Instant::now() + LOCK_PATIENCE;
+    loop {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) if Instant::now() < deadline => thread::sleep(LOOK_EVERY),
+            outcome => return outcome,
+        }
+    }
+}
+
 /// The journal that belongs to a database.
 pub fn beside(db: &Path) -> PathBuf {
     let mut name = db.as_os_str().to_owned();
@@ -152,11 +170,10 @@ impl Journal {
         #[cfg(unix)]
         std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
         let mut file = options.open(&path).map_err(failed)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(JournalError::Locked { path }),
-            Err(TryLockError::Error(source)) => return Err(failed(source)),
-        }
+        lock(&file).map_err(|error| match error {
+            TryLockError::WouldBlock => JournalError::Locked { path: path.clone() },
+            TryLockError::Error(source) => failed(source),
+        })?;
         let mut text = String::new();
         let (mut past, mut withdrawn) = (VecDeque::new(), None);
         if beginning == Beginning::WhereItEnded {

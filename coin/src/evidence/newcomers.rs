@@ -24,7 +24,7 @@ pub struct Arrivals {
 ///
 /// A newcomer who has not used the thing is no candidate: it is judged as if this person were not there. There is one
 /// exception, a thing that then seems to be everybody's. Whether "everybody" now means the newcomer too is just what is
-/// open, so that it is judged anew among all who are there.
+/// open, so that it is judged anew among all who are there; so is a thing that would be left without a candidate.
 ///
 /// # Errors
 /// If the context names people who are not of the household.
@@ -41,6 +41,9 @@ pub fn judge(
         .iter()
         .filter(|&user| !arrivals.newcomers.contains(user) || sessions[user.place()] > 0)
         .collect();
+    if candidates.is_empty() {
+        return judge_among(roster, members, class, context, parameters);
+    }
     let among = judge_among(roster, candidates, class, context, parameters)?;
     if among.best().0 == candidates && candidates.len() > 1 && candidates != members {
         return judge_among(roster, members, class, context, parameters);
@@ -48,7 +51,7 @@ pub fn judge(
     Ok(among)
 }
 
-/// The same among some, or among all where nobody is left.
+/// The same among some, or among all where nobody was there.
 fn judge_among(
     roster: &Roster,
     candidates: OwnerSet,

@@ -11,8 +11,8 @@ use rmcp::RoleServer;
 use rmcp::model::ProgressNotificationParam;
 use rmcp::service::RequestContext;
 use thiserror::Error;
-use tokio::sync::{Semaphore, watch};
-use tokio::time::{Instant, sleep_until};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
+use tokio::time::{Instant, sleep_until, timeout};
 
 use crate::store::{Call, Progress};
 
@@ -21,6 +21,10 @@ const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// How many requests of all clients are worked on at once. Those that wait for the disk count.
 pub(super) const WORK_AT_ONCE: usize = 128;
+
+/// How long a request waits for those before it. A client that sends hundreds of calls in one go over a slow disk gets
+/// them all done, one after another; who is refused after this time should send fewer.
+const WAIT_FOR_A_PLACE: Duration = Duration::from_secs(10);
 
 /// Why work was not done to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -31,7 +35,10 @@ pub(super) enum Undone {
     )]
     Fault,
     /// There is too much of it.
-    #[error("{WORK_AT_ONCE} requests are being worked on already; try again in a moment")]
+    #[error(
+        "{WORK_AT_ONCE} requests are being worked on, and none has ended within {} seconds; try again later",
+        WAIT_FOR_A_PLACE.as_secs()
+    )]
     TooMuch,
 }
 
@@ -53,16 +60,25 @@ pub(super) fn run_brief<T>(work: impl FnOnce() -> T) -> Result<T, Undone> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|_| Undone::Fault)
 }
 
+/// One of the `places` that there are for work, given to those who want one in the order in which they came.
+///
+/// # Errors
+/// If none becomes free in time.
+async fn place(places: &Arc<Semaphore>) -> Result<OwnedSemaphorePermit, Undone> {
+    let place = timeout(WAIT_FOR_A_PLACE, Arc::clone(places).acquire_owned()).await;
+    place.map_err(|_| Undone::TooMuch)?.map_err(|_| Undone::TooMuch)
+}
+
 /// Does the work of a request on a thread that may wait, in one of the `places` that there are for it.
 ///
 /// # Errors
-/// If none is, or if the work panicked.
+/// If none becomes free in time, or if the work panicked.
 pub(super) async fn run<T: Send + 'static>(
     places: &Arc<Semaphore>,
     context: &RequestContext<RoleServer>,
     work: impl FnOnce(&Call) -> T + Send + 'static,
 ) -> Result<T, Undone> {
-    let place = Arc::clone(places).try_acquire_owned().map_err(|_| Undone::TooMuch)?;
+    let place = place(places).await?;
     let (told, progress) = watch::channel(None);
     let call = match context.meta.get_progress_token() {
         Some(_) => Call::with_listener(move |progress| {
@@ -107,4 +123,31 @@ async fn tell(
         sleep_until(next).await;
     }
     std::future::pending().await
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn a_request_waits_for_those_before_it() {
+        let places = Arc::new(Semaphore::new(1));
+        let before = place(&places).await.unwrap();
+        let waiting = tokio::spawn({
+            let places = Arc::clone(&places);
+            async move { place(&places).await.map(drop) }
+        });
+        tokio::time::sleep(WAIT_FOR_A_PLACE / 2).await;
+        assert!(!waiting.is_finished());
+        drop(before);
+        assert_eq!(waiting.await.unwrap(), Ok(()));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_request_that_has_waited_too_long_is_refused() {
+        let places = Arc::new(Semaphore::new(0));
+        let came = Instant::now();
+        assert_eq!(place(&places).await.map(drop), Err(Undone::TooMuch));
+        assert_eq!(came.elapsed(), WAIT_FOR_A_PLACE);
+    }
 }

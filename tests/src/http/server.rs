@@ -75,6 +75,16 @@ impl HttpServer {
         self.stderr.text()
     }
 
+    /// Waits until it has written `part` to standard error, which comes later than its answers.
+    #[track_caller]
+    pub fn wait_for_stderr(&self, part: &str) {
+        let deadline = Instant::now() + PATIENCE;
+        while !self.stderr().contains(part) {
+            assert!(Instant::now() < deadline, "it never wrote {part:?}: {}", self.stderr());
+            thread::sleep(LOOK_EVERY);
+        }
+    }
+
     /// Its process.
     pub fn process(&self) -> u32 {
         self.child.id()

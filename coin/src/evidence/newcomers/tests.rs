@@ -113,6 +113,16 @@ fn who_is_not_there_yet_shares_nothing() {
 }
 
 #[test]
+fn where_all_are_newcomers_those_who_are_there_are_judged() {
+    let (roster, ann) = with_ann();
+    let founders: OwnerSet = roster.indices().filter(|&user| !ann.contains(user)).collect();
+    let nobodys = context(&[], None);
+    let arrivals = Arrivals { absent: ann, newcomers: founders };
+    let then = judge(&roster, arrivals, &marker(), &nobodys, &EvidenceParameters::default()).unwrap();
+    assert_eq!(then.marginals(4)[0].value(), 0.0, "who is not there yet owns nothing");
+}
+
+#[test]
 fn what_a_newcomer_owns_says_nothing_of_what_others_have_used() {
     let (roster, ann) = with_ann();
     let sessions = [("Bob", 6), ("Mary", 1)];

@@ -44,8 +44,8 @@ pub struct Limits {
     pub write: Duration,
     /// Requests from one address in a second.
     pub requests_per_second: NonZeroU32,
-    /// Requests that are worked on at once, until their answer begins. Those that wait for the disk count, so that a low number would have readers
-    /// wait for writers.
+    /// Requests that are worked on at once, until their answer begins. Those that wait for the disk count, so that a
+    /// low number would have readers wait for writers.
     pub requests_at_once: usize,
     /// How long a request waits for its turn.
     pub turn: Duration,
