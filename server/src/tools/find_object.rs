@@ -7,7 +7,7 @@ use coin::referring::{
 };
 use coin::roster::Roster;
 use coin_schemas::episode::FEATURE_DIMENSIONS;
-use coin_schemas::household::ObjectId;
+use coin_schemas::household::{ObjectId, UserName};
 use coin_schemas::tools::{
     AskedFor, FindDecision, FindObject, FindObjectResult, FoundObject, MAX_K, ObjectMatch,
     RequestInterpretation, display_name,
@@ -189,7 +189,7 @@ fn interpretation(interpretation: &Interpretation, roster: &Roster) -> RequestIn
 
 fn owner(reference: OwnerReference, roster: &Roster) -> String {
     let names = |members, between: &str| {
-        roster.owners(members).iter().map(|name| name.as_str()).collect::<Vec<_>>().join(between)
+        roster.owners(members).iter().map(UserName::as_str).collect::<Vec<_>>().join(between)
     };
     match reference {
         OwnerReference::Anybody => "anybody".to_owned(),
