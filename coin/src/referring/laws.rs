@@ -3,7 +3,7 @@
 use coin_schemas::household::{ObjectId, Position, Score};
 use proptest::prelude::*;
 
-use super::judged::{Expression, Home, expressions, find_among};
+use super::judged_tests::{Expression, Home, expressions, find_among};
 use super::{Decision, Finding, MappedThing, SURE};
 use crate::captions::test_support::roster;
 use crate::roster::{Roster, UserIndex};

@@ -29,7 +29,7 @@ mod question;
 mod synonyms;
 
 #[cfg(test)]
-mod judged;
+mod judged_tests;
 #[cfg(test)]
 mod laws;
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use coin_schemas::household::{ObjectId, Position, Score};
 use rstest::rstest;
 
-use super::judged::{Home, find_among};
+use super::judged_tests::{Home, find_among};
 use super::{Decision, Finding, MappedThing, find};
 use crate::captions::test_support::roster;
 use crate::roster::Roster;
