@@ -80,6 +80,12 @@ async def whose_is(trial: Trial) -> None:
     await trial.refused("whose_is", "object_id", "nothing", object_id="nothing")
 
 
+async def find_object(trial: Trial) -> None:
+    found = await trial.done("find_object", query="Bob's calculator", speaker="Mary")
+    assert found["decision"] == "found" and found["object"]["id"] == "1", found
+    await trial.refused("find_object", "speaker", "Bob", query="my cup", speaker="Bobby")
+
+
 async def next_question(trial: Trial) -> None:
     assert await trial.in_question() == await trial.in_question(), "asking changes nothing"
 
@@ -203,6 +209,7 @@ TOOLS = {
         nearby_objects,
         similar_objects,
         whose_is,
+        find_object,
         next_question,
         ask_owner,
         record_scores,

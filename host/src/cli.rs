@@ -55,6 +55,8 @@ pub struct CommandLine {
 pub enum Command {
     /// Compute thresholds on homes with known owners, for use on other homes
     Calibrate(CalibrateArguments),
+    /// Find the thing that a person means, or ask back
+    Ask(crate::ask::AskArguments),
     /// Compare COIN with the paper's baselines and ablations, in figures, tables and pages
     Experiment(ExperimentArguments),
     /// Make households with known owners

@@ -143,7 +143,7 @@ pub async fn load(folder: &Path) -> Result<LoadedEpisode, HomeError> {
 }
 
 /// Loading and importing a large home would stall every other task.
-async fn blocking<T: Send + 'static>(
+pub(crate) async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, HomeError> + Send + 'static,
 ) -> Result<T, HomeError> {
     match tokio::task::spawn_blocking(work).await {

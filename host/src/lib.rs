@@ -3,6 +3,7 @@
 //!
 //! Nothing here opens the database, and no formula of the method stands here.
 
+pub mod ask;
 pub mod calibrate;
 pub mod cli;
 pub mod client;

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
 use coin::calibration::{households_wanted, too_few_samples};
+use coin_host::ask::AskArguments;
 use coin_host::calibrate::{CalibrateSettings, calibrate_on, read_calibration};
 use coin_host::cli::{
     CalibrateArguments, Command, CommandLine, ExperimentArguments, GenerateCommand, MethodArgument,
@@ -24,6 +25,7 @@ use coin_host::pages::episode::{EpisodePage, episode as page};
 use coin_host::person::PersonKind;
 use coin_host::run::{Answers, EvidenceKept, ForeignCalibration, RunSettings, run_episode};
 use coin_schemas::report::Stopped;
+use coin_schemas::tools::FindDecision;
 use tempfile::NamedTempFile;
 use tokio_util::sync::CancellationToken;
 use tracing_subscriber::EnvFilter;
@@ -34,6 +36,8 @@ enum Failure {
     Refused(String),
     /// Something failed on the way. Exit status 1.
     Failed(String),
+    /// Nothing failed, but what was printed is a question or a refusal. Exit status 3.
+    NotFound,
 }
 
 fn main() -> ExitCode {
@@ -46,6 +50,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         None => run(&arguments.run),
         Some(Command::Calibrate(arguments)) => calibrate(arguments),
+        Some(Command::Ask(arguments)) => ask(arguments),
         Some(Command::Experiment(arguments)) => experiment(arguments),
         Some(Command::Generate(GenerateCommand::Homer(arguments))) => {
             generate::run_homer(arguments).map_err(|error| Failure::Refused(format!("{error:#}")))
@@ -65,6 +70,7 @@ fn main() -> ExitCode {
             printer.failure(&reason);
             ExitCode::from(1)
         }
+        Err(Failure::NotFound) => ExitCode::from(3),
     }
 }
 
@@ -206,6 +212,19 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
             printer.progress(&format!("This run ended early; {next_step}."));
             Ok(())
         }
+    }
+}
+
+fn ask(arguments: &AskArguments) -> Result<(), Failure> {
+    let reply = runtime()?
+        .block_on(coin_host::ask::ask(arguments))
+        .map_err(|error| failure(error.is_refusal(), &error))?;
+    Printer::new(ResultFormat::Text, Progress::Quiet)
+        .text(&reply.text)
+        .map_err(|error| Failure::Failed(format!("standard output takes no more: {error}")))?;
+    match reply.decision {
+        FindDecision::Found => Ok(()),
+        FindDecision::Ambiguous | FindDecision::None => Err(Failure::NotFound),
     }
 }
 

@@ -61,6 +61,8 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("list-objects.result.schema.json", schema_of::<tools::ListObjectsResult>()),
         ("list-users.arguments.schema.json", schema_of::<tools::ListUsers>()),
         ("list-users.result.schema.json", schema_of::<tools::ListUsersResult>()),
+        ("find-object.arguments.schema.json", schema_of::<tools::FindObject>()),
+        ("find-object.result.schema.json", schema_of::<tools::FindObjectResult>()),
         ("whose-is.arguments.schema.json", schema_of::<tools::WhoseIs>()),
         ("whose-is.result.schema.json", schema_of::<tools::WhoseIsResult>()),
         ("next-question.arguments.schema.json", schema_of::<tools::NextQuestion>()),

@@ -22,8 +22,12 @@ pub enum Purpose {
 /// How a place is named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
-    /// Next to, on or under another thing.
+    /// Next to another thing.
     Near,
+    /// On another thing or above it.
+    Above,
+    /// Under another thing.
+    Below,
     /// In a room, or in another thing.
     In,
 }
@@ -207,13 +211,9 @@ impl Reader<'_> {
                 }
                 Some(Mark::Put) => self.putting = true,
                 Some(Mark::Whose) => self.meaning.purpose = Purpose::Owner,
-                Some(Mark::Place(relation)) => {
-                    self.placing = true;
-                    self.meaning.hints.push(Hint {
-                        relation,
-                        place: Vec::new(),
-                        anchor: NounPhrase::default(),
-                    });
+                Some(Mark::Place(relation)) => self.begin_place(relation),
+                Some(Mark::Over) if !self.meaning.thing.is_empty() && !self.putting => {
+                    self.begin_place(Relation::Above);
                 }
                 Some(Mark::Not) => {
                     if let Some((_, next)) = self.owner_behind(at + length) {
@@ -221,7 +221,7 @@ impl Reader<'_> {
                         continue;
                     }
                 }
-                Some(Mark::Frame | Mark::And | Mark::Own | Mark::Destination) => {}
+                Some(Mark::Frame | Mark::And | Mark::Own | Mark::Over | Mark::Destination) => {}
                 None => {
                     let word = self.tokens[at].text.clone();
                     self.push(&word);
@@ -250,6 +250,11 @@ impl Reader<'_> {
             Some(hint) => &mut hint.anchor,
             None => &mut self.meaning.thing,
         }
+    }
+
+    fn begin_place(&mut self, relation: Relation) {
+        self.placing = true;
+        self.meaning.hints.push(Hint { relation, place: Vec::new(), anchor: NounPhrase::default() });
     }
 
     fn place(&mut self) -> Option<&mut Hint> {

@@ -3,6 +3,8 @@
 //! Words and label are a noun with details before it. The nouns have to mean the same, nearly the same, or be spelled
 //! nearly the same; details may be confirmed by the other side, contradicted, or be unknown to it.
 
+use std::collections::HashMap;
+
 use super::STEP;
 use super::synonyms::{Kinship, is_known, kinship, names_like};
 use crate::language::number::singular;
@@ -34,6 +36,22 @@ pub(super) struct Fit {
     pub(super) noun: f64,
     /// 0…1, at most `noun`
     pub(super) whole: f64,
+}
+
+/// How well words fit the labels of a map. A home has far fewer labels than things, and each is compared once.
+pub(super) struct LabelFits<'a> {
+    words: &'a [String],
+    fits: HashMap<&'a str, Fit>,
+}
+
+impl<'a> LabelFits<'a> {
+    pub(super) fn new(words: &'a [String]) -> Self {
+        Self { words, fits: HashMap::new() }
+    }
+
+    pub(super) fn of(&mut self, label: &'a str) -> Fit {
+        *self.fits.entry(label).or_insert_with(|| fit(self.words, &words_of(label)))
+    }
 }
 
 /// The words of a name: lower case, singular, without articles; "deck of cards" is a card deck.

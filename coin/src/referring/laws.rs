@@ -3,13 +3,13 @@
 use coin_schemas::household::{ObjectId, Position, Score};
 use proptest::prelude::*;
 
-use super::judged::{Expression, Home, expressions};
-use super::{Decision, Finding, MappedThing, SURE, find};
+use super::judged_tests::{Expression, Home, expressions, find_among};
+use super::{Decision, Finding, MappedThing, SURE};
 use crate::captions::test_support::roster;
-use crate::roster::Roster;
+use crate::roster::{Roster, UserIndex};
 use crate::support::{id, scores, user};
 
-const FILES: [&str; 3] = ["expressions.txt", "winding.txt", "unseen.txt"];
+const FILES: [&str; 4] = ["expressions.txt", "winding.txt", "unseen.txt", "heights.txt"];
 
 fn said() -> impl Strategy<Value = Expression> {
     let all: Vec<Expression> = FILES.into_iter().flat_map(expressions).collect();
@@ -18,7 +18,7 @@ fn said() -> impl Strategy<Value = Expression> {
 
 fn found(home: &Home, expression: &Expression, said: &str, things: &[MappedThing<'_>]) -> Finding {
     let speaker = expression.speaker.as_ref().map(|name| home.roster.index_of(name).unwrap());
-    find(&home.roster, things, said, speaker)
+    home.find(things, said, speaker)
 }
 
 /// The words with other capitals and other spaces.
@@ -76,16 +76,24 @@ impl Map {
         Self { roster, ids, things }
     }
 
+    /// The things may stand in another order.
+    fn find(&self, things: &[MappedThing<'_>], said: &str, speaker: Option<UserIndex>) -> Finding {
+        let scores = |thing: usize| {
+            let place = self.ids.iter().position(|id| id == things[thing].id).unwrap();
+            self.things[place].3.clone()
+        };
+        find_among(&self.roster, things, scores, said, speaker)
+    }
+
     fn things(&self) -> Vec<MappedThing<'_>> {
         self.ids
             .iter()
             .zip(&self.things)
-            .map(|(id, (class, position, room, scores))| MappedThing {
+            .map(|(id, (class, position, room, _))| MappedThing {
                 id,
                 class,
                 room: *room,
                 position: Position::new(*position).unwrap(),
-                scores,
                 likeness: None,
             })
             .collect()
@@ -124,10 +132,11 @@ proptest! {
             class: "zither",
             room: room.as_deref(),
             position: Position::new(position).unwrap(),
-            scores: &owners,
             likeness: None,
         });
-        let after = found(&home, &expression, &expression.said, &things);
+        let speaker = expression.speaker.as_ref().map(|name| home.roster.index_of(name).unwrap());
+        let scores = |thing: usize| home.scores.get(thing).unwrap_or(&owners).clone();
+        let after = find_among(&home.roster, &things, scores, &expression.said, speaker);
         if let Decision::Found(_) = before.decision {
             prop_assert_eq!(before.decision, after.decision);
         }
@@ -138,7 +147,7 @@ proptest! {
     fn nobody_gets_what_is_not_surely_theirs(things in made_up(), speaker in 0_usize..3) {
         let map = Map::new(things);
         for (said, owner) in [("my cup", speaker), ("bring me Mary's mug", 1), ("the father's book", 0), ("toms kettle", 2)] {
-            let finding = find(&map.roster, &map.things(), said, Some(user(speaker)));
+            let finding = map.find(&map.things(), said, Some(user(speaker)));
             if let Decision::Found(id) = finding.decision {
                 let place = map.ids.iter().position(|other| *other == id).unwrap();
                 prop_assert!(map.things[place].3[owner].value() >= SURE);
@@ -156,7 +165,7 @@ proptest! {
         for (other, name) in ["Bob's", "Mary's", "Tom's"].iter().enumerate().filter(|(other, _)| *other != speaker) {
             for noun in ["cup", "mug", "book", "things"] {
                 let said = format!("bring me {name} {noun}");
-                let finding = find(&map.roster, &map.things(), &said, Some(user(speaker)));
+                let finding = map.find(&map.things(), &said, Some(user(speaker)));
                 let refused = matches!(finding.decision, Decision::None { .. });
                 prop_assert!(refused, "{} {} {:?}", said, other, finding.decision);
             }
@@ -170,7 +179,7 @@ proptest! {
         let turn = turned % other.len().max(1);
         other.rotate_left(turn);
         let decided = |things: &[MappedThing<'_>]| {
-            match find(&map.roster, things, REQUESTS[request], Some(user(0))).decision {
+            match map.find(things, REQUESTS[request], Some(user(0))).decision {
                 Decision::Found(id) => (0, vec![id]),
                 Decision::Ambiguous { mut candidates, .. } => {
                     candidates.sort();
@@ -188,7 +197,7 @@ proptest! {
     #[test]
     fn numbers_are_between_nothing_and_one_and_questions_are_questions(things in made_up(), request in 0..REQUESTS.len()) {
         let map = Map::new(things);
-        let finding = find(&map.roster, &map.things(), REQUESTS[request], Some(user(0)));
+        let finding = map.find(&map.things(), REQUESTS[request], Some(user(0)));
         match finding.decision {
             Decision::Found(_) => {}
             Decision::Ambiguous { question, .. } => prop_assert!(question.ends_with('?'), "{}", question),
@@ -208,7 +217,7 @@ proptest! {
         let map = Map::new(vec![("cup", [0.0; 3], Some("kitchen"), vec![1.0, 0.0, 0.0])]);
         for said in [said, words.join(" ")] {
             for speaker in [None, Some(user(1))] {
-                find(&map.roster, &map.things(), &said, speaker);
+                map.find(&map.things(), &said, speaker);
             }
         }
     }

@@ -12,12 +12,16 @@
 //! The score is their product, because each is a condition that has to hold and none makes up for another: a cup that
 //! is Mary's is not half right for "my cup". The decision keeps ownership apart: somebody's thing is handed out only
 //! where it is [`SURE`]ly the one of whom the request names, however well the rest fits.
+//!
+//! To judge whose a thing is costs far more than to read its label. [`find`] therefore asks for the owners of things only
+//! where an answer depends on them.
 
 use coin_schemas::household::{ObjectId, Position, Score};
 
 mod finding;
 mod interpretation;
 mod labels;
+mod likeness;
 mod ownership;
 mod phrases;
 mod places;
@@ -25,7 +29,7 @@ mod question;
 mod synonyms;
 
 #[cfg(test)]
-mod judged;
+mod judged_tests;
 #[cfg(test)]
 mod laws;
 #[cfg(test)]
@@ -33,6 +37,7 @@ mod tests;
 
 pub use finding::{Decision, Finding, Match, find};
 pub use interpretation::{Hint, Interpretation, NounPhrase, Purpose, Relation, interpret};
+pub use likeness::{LEAST_COMPARED, likenesses};
 pub use ownership::OwnerReference;
 
 /// What one step away from the very words costs: a kind of the thing, a misspelling, a thing that others own too.
@@ -66,10 +71,7 @@ pub struct MappedThing<'a> {
     pub room: Option<&'a str>,
     /// Where it is, in metres.
     pub position: Position,
-    /// The probability of every member, in the order of the roster, to be among its owners.
-    pub scores: &'a [Score],
-    /// How much it looks like what the request describes, on the scale of label matches, where the caller has
-    /// compared features. A raw cosine of a text with an image feature is far below 1 even for the right thing (0.2
-    /// to 0.35 with CLIP), so that the caller has to bring it to this scale.
+    /// How much it looks like what the request describes, on the scale of label matches, as [`likenesses`] gives it;
+    /// `None` where no features were compared.
     pub likeness: Option<Score>,
 }

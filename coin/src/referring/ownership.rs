@@ -3,6 +3,8 @@
 //! The map keeps one score for each member. As in [`OwnerSetDistribution::from_scores`](crate::owners), the scores
 //! count as independent: s_u is the probability that u is among the owners.
 
+use std::collections::HashMap;
+
 use coin_schemas::household::Score;
 
 use super::STEP;
@@ -38,7 +40,41 @@ pub(super) struct Ownership {
     pub(super) fit: f64,
 }
 
+/// The owners' scores of the things that were asked about, each asked for once.
+pub(super) struct KnownOwners<F> {
+    ask: F,
+    known: HashMap<usize, Vec<Score>>,
+}
+
+impl<F> KnownOwners<F> {
+    pub(super) fn new(ask: F) -> Self {
+        Self { ask, known: HashMap::new() }
+    }
+
+    /// The scores of the thing at this place of the map.
+    pub(super) fn of<E>(&mut self, thing: usize) -> Result<&[Score], E>
+    where
+        F: FnMut(usize) -> Result<Vec<Score>, E>,
+    {
+        if !self.known.contains_key(&thing) {
+            let scores = (self.ask)(thing)?;
+            self.known.insert(thing, scores);
+        }
+        Ok(self.known.get(&thing).map_or(&[], Vec::as_slice))
+    }
+
+    /// What was asked for so far.
+    pub(super) fn known(&self) -> &HashMap<usize, Vec<Score>> {
+        &self.known
+    }
+}
+
 impl OwnerReference {
+    /// Whether a thing's owners decide if the reference is true of it.
+    pub(super) fn depends_on_owners(self) -> bool {
+        !matches!(self, Self::Anybody | Self::Speaker | Self::Unknown)
+    }
+
     /// What the scores, in the order of the roster, say of the reference; `None` where it is not known whom it
     /// means.
     ///

@@ -27,6 +27,9 @@ pub(super) enum Mark {
     And,
     /// A place follows.
     Place(Relation),
+    /// Above a place, where the thing was named before ("the lamp over the table"); otherwise it says nothing of the
+    /// thing ("bring over the lamp").
+    Over,
 }
 
 const PHRASES: &[(Mark, &str)] = &[
@@ -38,7 +41,7 @@ const PHRASES: &[(Mark, &str)] = &[
          looking, look for, looking for, search for, searching for, where, where is, where are, did, do, does, am, \
          are, is, was, were, be, leave, left, lost, lose, forgot, hey, hi, hello, robot, coin, ok, okay, thanks, \
          thank you, thank, the, a, an, some, any, mind, tell, know, there, here, this, that, these, those, or, it, one, \
-         ones, again, now, quickly, quick, kindly, just, so, with, over, back, thing, things, stuff, something, \
+         ones, again, now, quickly, quick, kindly, just, so, with, back, thing, things, stuff, something, \
          anything, for me, for us, over here, over there, right now, at once, if you can, anywhere, somewhere, which, \
          what, called, try, let's, let, see, ever, possible, if, when, time, may, might, must, should, read, use, wear, play, play with, drink, drink from, write with, eat, wash, \
          charge, borrow, open, lying, standing, hanging, sitting, kept, pair of, pairs of, set of, bunch of, who",
@@ -60,10 +63,21 @@ const PHRASES: &[(Mark, &str)] = &[
     (Mark::And, "and, plus, as well as, and also, &"),
     (
         Mark::Place(Relation::Near),
-        "next to, near, near to, close to, by, beside, alongside, on, on top of, under, below, above, behind, \
-         in front of, at, nearest to, closest to, from on, between, opposite, that is next to, that is near, \
-         that is on, which is on, which is next to, left of, right of, to the left of, to the right of, around",
+        "next to, near, near to, close to, by, beside, alongside, behind, in front of, at, nearest to, closest to, \
+         between, opposite, that is next to, that is near, which is next to, left of, right of, to the left of, \
+         to the right of, around",
     ),
+    (
+        Mark::Place(Relation::Above),
+        "on, on top of, on the top of, from on, from on top of, off, from off, above, from above, upon, that is on, \
+         which is on",
+    ),
+    (
+        Mark::Place(Relation::Below),
+        "under, underneath, beneath, below, from under, from underneath, from beneath, from below, out from under, \
+         out from underneath, out from beneath",
+    ),
+    (Mark::Over, "over"),
     (
         Mark::Place(Relation::In),
         "in, inside, from, out of, within, that is in, which is in, that are in, down in, up in, over in",

@@ -1,6 +1,8 @@
 //! Words for a person: which one is meant, and why nothing is handed out.
 
-use coin_schemas::household::ObjectId;
+use std::collections::HashMap;
+
+use coin_schemas::household::{ObjectId, Score};
 
 use super::MappedThing;
 use super::interpretation::Interpretation;
@@ -18,13 +20,19 @@ const OWNER: f64 = 0.5;
 const BESIDE: f64 = 1.0;
 
 /// The most things that a question or a refusal lists.
-const LISTED: usize = 4;
+pub(super) const LISTED: usize = 4;
+
+/// The most things that owners and neighbours tell apart: to compare more takes long, and of more a question lists a few
+/// anyway.
+pub(super) const COMPARED: usize = 12;
 
 /// What a decision is made of.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     pub(super) roster: &'a Roster,
     pub(super) things: &'a [MappedThing<'a>],
+    /// The owners' scores of the things that are spoken of, by place.
+    pub(super) scores: &'a HashMap<usize, Vec<Score>>,
     pub(super) speaker: Option<UserIndex>,
     pub(super) interpretation: &'a Interpretation,
 }
@@ -35,10 +43,12 @@ impl Scene<'_> {
     }
 
     fn owners(&self, thing: usize) -> OwnerSet {
-        let scores = self.things[thing].scores;
+        let scores = self.scores.get(&thing);
         self.roster
             .indices()
-            .filter(|user| scores.get(user.place()).is_some_and(|score| score.value() >= OWNER))
+            .filter(|user| {
+                scores.and_then(|scores| scores.get(user.place())).is_some_and(|score| score.value() >= OWNER)
+            })
             .collect()
     }
 
@@ -65,30 +75,47 @@ impl Scene<'_> {
         }
     }
 
-    /// "by the kettle": the nearest thing of another name that stands in no other candidate's neighbourhood.
-    fn neighbour(&self, thing: usize, candidates: &[usize]) -> Option<String> {
-        let here = &self.things[thing];
-        let beside = |candidate: usize, other: usize| {
-            let (candidate, other) = (&self.things[candidate], &self.things[other]);
-            let together = candidate.room.is_none() || other.room.is_none() || candidate.room == other.room;
-            Some(distance(candidate.position, other.position, 1.0))
-                .filter(|&metres| together && metres <= BESIDE)
-        };
-        (0..self.things.len())
-            .filter(|other| !candidates.contains(other))
-            .filter(|&other| self.things[other].class != here.class)
-            .filter_map(|other| Some((other, beside(thing, other)?)))
-            .filter(|&(other, metres)| {
-                // Another of the same name, or another candidate nearer by, would make the neighbour mean both.
-                candidates.iter().all(|&rival| {
-                    rival == thing
-                        || beside(rival, other).is_none_or(|rival_metres| rival_metres > 2.0 * metres)
-                }) && (0..self.things.len())
-                    .filter(|&twin| twin != other && self.things[twin].class == self.things[other].class)
-                    .all(|twin| candidates.iter().all(|&candidate| beside(candidate, twin).is_none()))
+    /// How far the other thing is away, if it is beside this one.
+    fn beside(&self, thing: usize, other: usize) -> Option<f64> {
+        let (thing, other) = (&self.things[thing], &self.things[other]);
+        let together = thing.room.is_none() || other.room.is_none() || thing.room == other.room;
+        Some(distance(thing.position, other.position, 1.0)).filter(|&metres| together && metres <= BESIDE)
+    }
+
+    /// For every candidate "by the kettle": the nearest thing of another name that stands in no other candidate's
+    /// neighbourhood.
+    fn neighbours(&self, candidates: &[usize]) -> Vec<Option<String>> {
+        let around: Vec<Vec<(usize, f64)>> = candidates
+            .iter()
+            .map(|&thing| {
+                let others = (0..self.things.len()).filter(|other| !candidates.contains(other));
+                others.filter_map(|other| Some((other, self.beside(thing, other)?))).collect()
             })
-            .min_by(|left, right| left.1.total_cmp(&right.1))
-            .map(|(other, _)| format!("by {}", self.bare_name(other).name))
+            .collect();
+        candidates
+            .iter()
+            .zip(&around)
+            .map(|(&thing, near)| {
+                near.iter()
+                    .filter(|&&(other, _)| self.things[other].class != self.things[thing].class)
+                    .filter(|&&(other, metres)| {
+                        // Another of the same name, or another candidate nearer by, would make it mean both.
+                        let class = self.things[other].class;
+                        candidates.iter().all(|&rival| {
+                            rival == thing
+                                || self
+                                    .beside(rival, other)
+                                    .is_none_or(|rival_metres| rival_metres > 2.0 * metres)
+                        }) && around
+                            .iter()
+                            .flatten()
+                            .all(|&(twin, _)| twin == other || self.things[twin].class != class)
+                            && candidates.iter().all(|&rival| self.things[rival].class != class)
+                    })
+                    .min_by(|left, right| left.1.total_cmp(&right.1))
+                    .map(|&(other, _)| format!("by {}", self.bare_name(other).name))
+            })
+            .collect()
     }
 }
 
@@ -113,9 +140,10 @@ pub(super) fn which(scene: &Scene<'_>, candidates: &[usize]) -> String {
         candidates.iter().map(|&thing| word(thing)).collect()
     };
     let labels = of(&|thing| Some(scene.bare_name(thing).name));
-    let owners = of(&|thing| scene.whose(scene.owners(thing)));
+    let few = candidates.len() <= COMPARED;
+    let owners = of(&|thing| scene.whose(scene.owners(thing)).filter(|_| few));
     let rooms = of(&|thing| Some(scene.name(thing).name).filter(|_| scene.things[thing].room.is_some()));
-    let neighbours = of(&|thing| scene.neighbour(thing, candidates));
+    let neighbours = if few { scene.neighbours(candidates) } else { vec![None; candidates.len()] };
     let nearby: Feature = neighbours
         .iter()
         .zip(candidates)
@@ -144,10 +172,11 @@ pub(super) fn which(scene: &Scene<'_>, candidates: &[usize]) -> String {
 /// How many candidates an answer leaves on average, if each is equally likely to be meant: Σ n² / n over the groups.
 fn left_over(feature: &Feature) -> f64 {
     let total = feature.len() as f64;
-    feature
-        .iter()
-        .map(|word| feature.iter().filter(|other| *other == word).count() as f64)
-        .fold(0.0, |sum, group| sum + group / total)
+    let mut groups: HashMap<Option<&str>, usize> = HashMap::new();
+    for word in feature {
+        *groups.entry(word.as_deref()).or_default() += 1;
+    }
+    feature.iter().map(|word| groups[&word.as_deref()] as f64).fold(0.0, |sum, group| sum + group / total)
 }
 
 /// The different words, the first ones, joined by "or".

@@ -3,8 +3,8 @@
 use coin_schemas::household::{ObjectId, Position, Score};
 use rstest::rstest;
 
-use super::judged::Home;
-use super::{Decision, MappedThing, find};
+use super::judged_tests::{Home, find_among};
+use super::{Decision, Finding, MappedThing, find};
 use crate::captions::test_support::roster;
 use crate::roster::Roster;
 use crate::support::{id, scores, user};
@@ -20,7 +20,7 @@ fn words(decision: Decision) -> String {
 fn said(home: &str, speaker: Option<&str>, request: &str) -> String {
     let home = Home::read(home, 1.0);
     let speaker = speaker.map(|name| home.roster.index_of(name).unwrap());
-    words(find(&home.roster, &home.things(), request, speaker).decision)
+    words(home.find(&home.things(), request, speaker).decision)
 }
 
 #[rstest]
@@ -130,20 +130,24 @@ impl Map {
         self.ids
             .iter()
             .zip(&self.things)
-            .map(|(id, (class, room, along, scores))| MappedThing {
+            .map(|(id, (class, room, along, _))| MappedThing {
                 id,
                 class,
                 room: *room,
                 position: Position::new([*along, 0.0, 0.0]).unwrap(),
-                scores,
                 likeness: None,
             })
             .collect()
     }
 
     /// Bob speaks.
+    fn find(&self, things: &[MappedThing<'_>], request: &str) -> Finding {
+        find_among(&self.roster, things, |thing| self.things[thing].3.clone(), request, Some(user(0)))
+    }
+
+    /// Bob speaks.
     fn say(&self, request: &str) -> String {
-        words(find(&self.roster, &self.things(), request, Some(user(0))).decision)
+        words(self.find(&self.things(), request).decision)
     }
 }
 
@@ -188,9 +192,7 @@ fn the_word_itself_comes_before_a_kind_and_an_owner_before_both() {
 fn what_a_thing_looks_like_counts_where_its_label_does_not() {
     let map = Map::new(&[("object", None, 0.0, BOBS), ("object", None, 5.0, MARYS)]);
     let mut things = map.things();
-    let decision = |things: &[MappedThing<'_>], said: &str| {
-        words(find(&map.roster, things, said, Some(user(0))).decision)
-    };
+    let decision = |things: &[MappedThing<'_>], said: &str| words(map.find(things, said).decision);
     assert_eq!(decision(&things, "my violin"), "I know of no violin.");
     for thing in &mut things {
         thing.likeness = Some(Score::new(0.9).unwrap());
@@ -203,7 +205,7 @@ fn what_a_thing_looks_like_counts_where_its_label_does_not() {
 fn matches_come_with_their_numbers_the_best_first() {
     let map =
         Map::new(&[("mug", None, 0.0, [0.5, 0.5]), ("cup", None, 1.0, BOBS), ("book", None, 0.0, BOBS)]);
-    let finding = find(&map.roster, &map.things(), "my cup next to the book", Some(user(0)));
+    let finding = map.find(&map.things(), "my cup next to the book");
     let [cup, mug] = finding.matches.as_slice() else { panic!("{finding:?}") };
     // exp(−½) one metre away; fits of 1 and of 0.8 · ½ + 0.2 · ½ · ½.
     let beside = 0.606_530_659_712_633_4;
@@ -216,4 +218,36 @@ fn matches_come_with_their_numbers_the_best_first() {
 #[test]
 fn an_empty_home_has_nothing() {
     assert_eq!(Map::new(&[]).say("my cup"), "I know of no cup.");
+}
+
+/// Owners are asked for once, and only where an answer depends on them.
+#[rstest]
+#[case("my cup", &["1", "2"])]
+#[case("my cup in the kitchen", &["1", "2"])]
+#[case("the cup", &["1", "2"])]
+#[case("the book", &[])]
+#[case("the book next to my cup", &["1", "2"])]
+#[case("my violin", &[])]
+#[case("the red book", &[])]
+#[case("the teapot", &[])]
+fn owners_are_judged_only_where_they_count(#[case] said: &str, #[case] expected: &[&str]) {
+    let map = Map::new(&[
+        ("cup", Some("kitchen"), 0.0, BOBS),
+        ("cup", Some("kitchen"), 4.0, MARYS),
+        ("book", None, 0.0, BOBS),
+    ]);
+    let mut asked = Vec::new();
+    let scores = |thing: usize| {
+        asked.push(map.ids[thing].as_str());
+        Ok::<_, std::convert::Infallible>(map.things[thing].3.clone())
+    };
+    assert!(find(&map.roster, &map.things(), said, Some(user(0)), scores).is_ok());
+    assert_eq!(asked, expected);
+}
+
+#[test]
+fn a_failure_to_judge_an_owner_is_passed_on() {
+    let map = Map::new(&[("cup", None, 0.0, BOBS)]);
+    let failed = find(&map.roster, &map.things(), "my cup", Some(user(0)), |_| Err("no owners"));
+    assert_eq!(failed, Err("no owners"));
 }

@@ -5,6 +5,7 @@
 //! answered with near misses and not with a parse error.
 
 mod asking;
+mod finding;
 mod judging;
 mod listing;
 mod looking;
@@ -14,6 +15,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use asking::{AskOutcome, AskOwner, AskOwnerResult};
+pub use finding::{
+    AskedFor, FindDecision, FindObject, FindObjectResult, FoundObject, ObjectMatch, RequestInterpretation,
+};
 pub use judging::{
     AnswerEvidence, Evidence, LookAlikeEvidence, NeighbourEvidence, NextQuestion, NextQuestionResult,
     UsageEvidence, WhoseIs, WhoseIsResult,

@@ -3,6 +3,7 @@
 
 mod judgement;
 mod known_ownership;
+mod likeness;
 mod next_question;
 mod surroundings;
 mod usage;
@@ -17,7 +18,7 @@ use jiff::civil::DateTime;
 use crate::store::{Belief, Household, ObjectKey, Reader, StoreError, StoredObject};
 
 pub(crate) use judgement::{Basis, Judgement, Moment, thresholds_of};
-pub(crate) use surroundings::LookAlikes;
+pub(crate) use surroundings::{LookAlikes, four_decimals};
 pub(crate) use usage::Window;
 
 /// A home, as it is in one transaction. What a call needs is read once, when it is first needed.

@@ -79,7 +79,7 @@ impl Scene<'_> {
 }
 
 /// A number to four decimals, as distances, weights and similarities are given.
-fn four_decimals(number: f64) -> f64 {
+pub(crate) fn four_decimals(number: f64) -> f64 {
     // Adding zero turns -0.0 into 0.0.
     (number * 1e4).round() / 1e4 + 0.0
 }

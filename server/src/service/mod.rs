@@ -38,9 +38,13 @@ const RESOURCE_LIST_TTL_MILLISECONDS: u64 = 10_000;
 const DOCUMENT_TTL_MILLISECONDS: u64 = 0;
 
 /// What a client is told at first, sentence by sentence, each with the tools that it speaks of.
-const INSTRUCTIONS: [(&[&str], &str); 7] = [
+const INSTRUCTIONS: [(&[&str], &str); 8] = [
     (&[], "COIN knows the things of a home and who owns them."),
     (&["list_objects", "whose_is"], "Find a thing with list_objects and ask whose_is about it."),
+    (
+        &["find_object"],
+        "Which thing a person's words mean, and whether it is theirs, find_object tells; hand out nothing else.",
+    ),
     (
         &["ask_owner"],
         "If it is not settled whose a thing is, do not guess but call ask_owner, which asks the person.",

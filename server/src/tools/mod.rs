@@ -10,6 +10,7 @@ mod conversation;
 pub(crate) mod document;
 mod error;
 mod fields;
+mod find_object;
 mod get_usage_summary;
 mod list_objects;
 mod list_users;

@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use super::add_user::AddUserTool;
 use super::ask_owner::AskOwnerTool;
+use super::find_object::FindObjectTool;
 use super::get_usage_summary::GetUsageSummaryTool;
 use super::list_objects::ListObjectsTool;
 use super::list_users::ListUsersTool;
@@ -151,6 +152,7 @@ impl Registry {
         let mut add = |name, entry| entries.insert(name, entry);
         add(AddUserTool::NAME, Entry::new::<AddUserTool>());
         add(AskOwnerTool::NAME, Entry::new::<AskOwnerTool>());
+        add(FindObjectTool::NAME, Entry::new::<FindObjectTool>());
         add(GetUsageSummaryTool::NAME, Entry::new::<GetUsageSummaryTool>());
         add(ListObjectsTool::NAME, Entry::new::<ListObjectsTool>());
         add(ListUsersTool::NAME, Entry::new::<ListUsersTool>());

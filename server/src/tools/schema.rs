@@ -12,21 +12,28 @@ pub(super) fn of_arguments<T: JsonSchema>() -> JsonObject {
     object_schema::<T>(SchemaSettings::draft2020_12().for_deserialize())
 }
 
-/// The schema of a result: what is sent. It says of what kind every field is and no more: hosts check results with it
+/// The schema of a result: what is sent. It says which fields are always there, of what kind every field within them is,
+/// and no more: hosts check results with it
 /// and show it to few models, who read what a result means in the description of its tool. `schemas/schema/` has the
 /// whole of it.
 pub(super) fn of_output<T: JsonSchema>() -> JsonObject {
     let mut schema = Schema::from(object_schema::<T>(SchemaSettings::draft2020_12().for_serialize()));
     strip_details(&mut schema);
+    transform_subschemas(&mut strip_required, &mut schema);
     into_object(schema)
 }
 
 fn strip_details(schema: &mut Schema) {
     transform_subschemas(&mut |nested: &mut Schema| strip_details(nested), schema);
-    for detail in ["description", "uniqueItems", "minimum", "maximum"] {
+    for detail in ["description", "uniqueItems", "minItems", "maxItems", "minimum", "maximum"] {
         schema.remove(detail);
     }
     strip_variants(schema);
+}
+
+fn strip_required(schema: &mut Schema) {
+    transform_subschemas(&mut strip_required, schema);
+    schema.remove("required");
 }
 
 /// One list of texts instead of a choice between constants, one for each text.

@@ -5,9 +5,10 @@ use rstest::rstest;
 use serde_json::{Value, json};
 
 /// The tools of this version and whether they only look.
-const TOOLS: [(&str, bool); 13] = [
+const TOOLS: [(&str, bool); 14] = [
     ("add_user", false),
     ("ask_owner", false),
+    ("find_object", true),
     ("get_usage_summary", true),
     ("list_objects", true),
     ("list_users", true),
@@ -132,6 +133,7 @@ fn the_defaults_of_the_contract_are_advertised() {
     assert_eq!(default("nearby_objects", "gamma"), 1.0);
     assert_eq!(default("nearby_objects", "min_weight"), 0.01);
     assert_eq!(default("similar_objects", "k"), 5);
+    assert_eq!(default("find_object", "k"), 5);
     assert_eq!(default("record_answer", "owner_outside_household"), false);
     assert_eq!(default("list_objects", "limit"), 50);
 }
@@ -167,6 +169,7 @@ fn results_satisfy_the_published_schemas_too() {
         ("list_objects", json!({"limit": 1})),
         ("list_users", json!({})),
         ("whose_is", json!({"object_id": "marker"})),
+        ("find_object", json!({"query": "my marker", "speaker": "Bob"})),
         ("next_question", json!({})),
         ("ask_owner", json!({"object_id": "marker", "owner": "Bob's"})),
         ("add_user", json!({"name": "Ann"})),

@@ -6,6 +6,8 @@
 
 mod answers;
 mod definitions;
+mod finding;
+mod finding_expressions;
 mod judging;
 mod lists;
 mod protocol;

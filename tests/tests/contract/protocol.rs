@@ -82,6 +82,8 @@ fn one_of_each() -> Vec<(&'static str, Value)> {
         ("record_answer", super::answer("mug-blue", "Mary")),
         ("nearby_objects", json!({"object_id": "marker"})),
         ("similar_objects", json!({"object_id": "marker"})),
+        ("find_object", json!({"query": "Mary's mug"})),
+        ("find_object", json!({"query": "a mug", "speaker": "Zoe"})),
         ("retract_answer", json!({"object_id": "mug-blue"})),
         ("retract_answer", json!({"object_id": "mug-blue"})),
         ("list_objects", json!({"limit": 2})),

@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 /// Arguments that every tool accepts in the furnished home.
 fn good_arguments(tool: &str) -> Value {
     match tool {
+        "find_object" => json!({"query": "a mug"}),
         "list_objects" | "list_users" => json!({}),
         "record_answer" => super::answer("marker", "Bob"),
         "record_scores" => json!({"object_id": "marker", "scores": {"Bob": 0.9, "Mary": 0.1, "Tom": 0.0}}),
@@ -86,6 +87,14 @@ fn sql_in_an_id_is_an_unknown_id() {
 #[case("get_usage_summary", json!({"object_id": null}), &["object_id"])]
 #[case("get_usage_summary", json!({"object": "marker"}), &["object", "object_id"])]
 #[case("get_usage_summary", json!({"windowdays": 7}), &["windowdays", "window_days"])]
+#[case("find_object", json!({"speaker": "Bobby"}), &["speaker", "Bobby", "\"Bob\"", "Mary"])]
+#[case("find_object", json!({"query": "x".repeat(2001)}), &["query", "2001", "2000"])]
+#[case("find_object", json!({"query": null}), &["query"])]
+#[case("find_object", json!({"k": 0}), &["k", "0", "100"])]
+#[case("find_object", json!({"query_embedding": [0.1, 0.2, 0.3]}), &["query_embedding", "3 numbers", "512"])]
+#[case("find_object", json!({"query_embedding": vec![0.0; 512]}), &["query_embedding", "all numbers are 0", "512"])]
+#[case("find_object", json!({"query_embedding": vec![1e200; 512]}), &["query_embedding", "too large"])]
+#[case("find_object", json!({"query_embedding": vec!["NaN"; 512]}), &["query_embedding"])]
 #[case("nearby_objects", json!({"k": 0}), &["k", "0", "1", "100"])]
 #[case("nearby_objects", json!({"k": 101}), &["k", "101", "100"])]
 #[case("nearby_objects", json!({"k": 1_000_000_000_000_u64}), &["k", "1000000000000"])]

@@ -1,6 +1,7 @@
 //! `host` from the command line to the report: what the README promises, and what is refused.
 
 mod alone;
+mod asking_in_words;
 mod experiment;
 mod gates;
 mod making;

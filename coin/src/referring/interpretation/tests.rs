@@ -55,7 +55,9 @@ fn things_and_owners_are_told_apart(#[case] said: &str, #[case] class: &str, #[c
 #[rstest]
 #[case::a_thing("the cup next to the sink", Relation::Near, "sink", EVERYONE)]
 #[case::an_owned_thing("the cup by my wife's bed", Relation::Near, "bed", members(&[2]))]
-#[case::below("the cup on top of the table", Relation::Near, "table", EVERYONE)]
+#[case::on("the cup on top of the table", Relation::Above, "table", EVERYONE)]
+#[case::over("the cup over the table", Relation::Above, "table", EVERYONE)]
+#[case::under("the cup out from under the table", Relation::Below, "table", EVERYONE)]
 #[case::a_room("the cup from the living room", Relation::In, "living room", EVERYONE)]
 #[case::a_clause("the cup that is in the kitchen", Relation::In, "kitchen", EVERYONE)]
 fn places_are_hints(

@@ -47,6 +47,7 @@ fn sorted(value: Value) -> Value {
 #[rstest]
 #[case("add_user")]
 #[case("ask_owner")]
+#[case("find_object")]
 #[case("get_usage_summary")]
 #[case("list_objects")]
 #[case("list_users")]
@@ -72,6 +73,7 @@ fn there_is_a_snapshot_of_every_tool() {
         [
             "add_user",
             "ask_owner",
+            "find_object",
             "get_usage_summary",
             "list_objects",
             "list_users",
@@ -198,7 +200,7 @@ fn the_whole_list_is_small() {
 fn a_server_that_may_not_write_offers_no_tool_that_records() {
     let registry = Registry::new(&ToolSelection::all(), Access::ReadOnly);
     assert!(!registry.definitions().iter().any(|tool| records(&tool.name)));
-    assert_eq!(registry.definitions().len(), 7);
+    assert_eq!(registry.definitions().len(), 8);
 }
 
 #[test]
@@ -212,6 +214,6 @@ fn tools_can_be_selected() {
     };
     assert_eq!(names("list_users, list_objects"), ["list_objects", "list_users"]);
     assert_eq!(names("core"), ["get_usage_summary", "nearby_objects", "record_answer", "similar_objects"]);
-    assert_eq!(names("all").len(), 13);
-    insta::assert_snapshot!("list_user".parse::<ToolSelection>().unwrap_err(), @r#"there is no tool "list_user". Did you mean "list_users" or "list_objects"? The tools are add_user, ask_owner, get_usage_summary, list_objects, list_users, nearby_objects, next_question, record_answer, record_scores, record_usage, retract_answer, similar_objects, whose_is."#);
+    assert_eq!(names("all").len(), 14);
+    insta::assert_snapshot!("list_user".parse::<ToolSelection>().unwrap_err(), @r#"there is no tool "list_user". Did you mean "list_users" or "list_objects"? The tools are add_user, ask_owner, find_object, get_usage_summary, list_objects, list_users, nearby_objects, next_question, record_answer, record_scores, record_usage, retract_answer, similar_objects, whose_is."#);
 }

@@ -1,0 +1,134 @@
+//! `host ask`: a request in a person's words, and what the home's server makes of it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::{ArgGroup, Args};
+use coin_schemas::tools::{AskedFor, FindDecision, FindObject, FindObjectResult, FoundObject};
+use coin_server::service::{CoinService, ServiceOptions, service};
+use coin_server::store::{Access, Store, StoreError};
+use thiserror::Error;
+
+use crate::client::{ServerError, ToolServer};
+use crate::home::{self, HomeError};
+use crate::output::plain_text;
+
+const EXAMPLES: &str = "\
+Examples:
+  host ask 'bring me my cup' --speaker Bob --db home.db
+      The thing that Bob means, where it is, and why it is his; or a question, or why he does not get it.
+  host ask \"the book under Mary's desk\" --episode HOME
+      In a home that is only looked at: nothing is kept.
+  host ask 'whose mug is this?' --db home.db --json
+      The whole result of find_object, and it alone, on standard output.
+
+Exit status: 0 the thing is found; 1 failed; 2 wrong use, a refused file or an unknown speaker; 3 no thing is found: a
+question has to come first, or nothing is handed out.";
+
+/// Arguments of `host ask`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES, group(ArgGroup::new("home").required(true).args(["db", "episode"])))]
+pub struct AskArguments {
+    /// What the person says
+    pub words: String,
+    /// The member of the household who says it; without, \"my\" is nobody's
+    #[arg(long, value_name = "NAME")]
+    pub speaker: Option<String>,
+    /// The home's database; it is only read
+    #[arg(long, value_name = "FILE")]
+    pub db: Option<PathBuf>,
+    /// The folder of an episode
+    #[arg(long, value_name = "DIR")]
+    pub episode: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Why there is no result.
+#[derive(Debug, Error)]
+pub enum AskError {
+    /// The home is refused, or its server fails.
+    #[error(transparent)]
+    Home(#[from] HomeError),
+    /// The result cannot be written as JSON.
+    #[error("the result cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl AskError {
+    /// Whether what was given is at fault.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            Self::Home(HomeError::Server(error)) => matches!(error, ServerError::Tool { .. }),
+            Self::Home(_) => true,
+            Self::Json(_) => false,
+        }
+    }
+}
+
+/// What a request comes to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reply {
+    /// What is printed.
+    pub text: String,
+    /// What was decided.
+    pub decision: FindDecision,
+}
+
+/// Asks a home's server, which runs in this process.
+///
+/// # Errors
+/// If the home or the speaker is refused, or the server fails.
+pub async fn ask(arguments: &AskArguments) -> Result<Reply, AskError> {
+    let server = ToolServer::in_process(open(arguments).await?).await.map_err(HomeError::from)?;
+    let request = FindObject {
+        query: arguments.words.clone(),
+        speaker: arguments.speaker.clone(),
+        ..FindObject::default()
+    };
+    let result: FindObjectResult = server.call("find_object", &request).await.map_err(HomeError::from)?;
+    server.close().await;
+    let text = match arguments.json {
+        true => format!("{}\n", serde_json::to_string_pretty(&result)?),
+        false => in_words(&result),
+    };
+    Ok(Reply { text, decision: result.decision })
+}
+
+async fn open(arguments: &AskArguments) -> Result<CoinService, HomeError> {
+    let db = arguments.db.clone();
+    let loaded = match &arguments.episode {
+        Some(folder) => Some(home::load(folder).await?),
+        None => None,
+    };
+    home::blocking(move || {
+        let store = match (loaded, db) {
+            (Some(loaded), _) => {
+                let store = Store::open_in_memory()?;
+                store.import(&loaded)?;
+                store
+            }
+            (None, Some(file)) => Store::open(&file, Access::ReadOnly)?,
+            (None, None) => return Err(StoreError::NobodyLivesHere.into()),
+        };
+        Ok(service(Arc::new(store), ServiceOptions::default()))
+    })
+    .await
+}
+
+/// The thing and why, the question, or the reason, in plain words.
+fn in_words(result: &FindObjectResult) -> String {
+    let lines = match (&result.object, result.interpretation.asked_for) {
+        (Some(object), AskedFor::Object) => vec![place(object), object.explanation.clone()],
+        (Some(object), AskedFor::Owner) => vec![object.explanation.clone(), place(object)],
+        (None, _) => result.question.iter().chain(&result.reason).cloned().collect(),
+    };
+    lines.iter().map(|line| format!("{}\n", plain_text(line))).collect()
+}
+
+fn place(object: &FoundObject) -> String {
+    let [x, y, z] = object.position.metres();
+    let room = object.room.as_ref().map(|room| format!(" in the {room}")).unwrap_or_default();
+    format!("{} (id {}){room}, at {x:.2}, {y:.2}, {z:.2} m.", object.name, object.id)
+}
