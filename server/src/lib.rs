@@ -10,6 +10,7 @@ pub mod display;
 mod doctor;
 pub mod episode;
 mod hosts;
+mod map;
 mod near_miss;
 pub mod output_file;
 pub mod pages;

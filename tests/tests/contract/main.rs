@@ -8,6 +8,7 @@ mod answers;
 mod definitions;
 mod judging;
 mod lists;
+mod map;
 mod protocol;
 mod recording;
 mod refusals;
