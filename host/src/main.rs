@@ -1,6 +1,5 @@
 //! The program `host`: reads the command line, runs what it names, and ends with an exit status.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -26,7 +25,7 @@ use coin_host::person::PersonKind;
 use coin_host::run::{Answers, EvidenceKept, ForeignCalibration, RunSettings, run_episode};
 use coin_schemas::report::Stopped;
 use coin_schemas::tools::FindDecision;
-use tempfile::NamedTempFile;
+use coin_server::output_file::{OutputFile, OutputFileError};
 use tokio_util::sync::CancellationToken;
 use tracing_subscriber::EnvFilter;
 
@@ -38,6 +37,15 @@ enum Failure {
     Failed(String),
     /// Nothing failed, but what was printed is a question or a refusal. Exit status 3.
     NotFound,
+}
+
+impl From<OutputFileError> for Failure {
+    fn from(source: OutputFileError) -> Self {
+        match source {
+            OutputFileError::Refused { .. } => Self::Refused(source.to_string()),
+            OutputFileError::Failed { .. } => Self::Failed(source.to_string()),
+        }
+    }
 }
 
 fn main() -> ExitCode {
@@ -309,43 +317,4 @@ fn experiment(arguments: &ExperimentArguments) -> Result<(), Failure> {
     printer
         .text(&coin_host::experiment::summary(&results))
         .map_err(|error| Failure::Failed(format!("standard output takes no more: {error}")))
-}
-
-/// A file that appears whole or not at all.
-struct OutputFile {
-    path: PathBuf,
-    partial: NamedTempFile,
-}
-
-impl OutputFile {
-    fn create(path: &Path) -> Result<Self, Failure> {
-        let refused = |reason: String| Failure::Refused(format!("cannot write {}: {reason}", path.display()));
-        if path.is_dir() {
-            return Err(refused("it is a folder; name a file".to_owned()));
-        }
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        let partial = NamedTempFile::new_in(folder).map_err(|error| refused(error.to_string()))?;
-        Ok(Self { path: path.to_owned(), partial })
-    }
-
-    fn failed(&self, reason: &impl std::fmt::Display) -> Failure {
-        Failure::Failed(format!("cannot write {}: {reason}", self.path.display()))
-    }
-
-    fn write_json(self, value: &impl serde::Serialize) -> Result<(), Failure> {
-        let json = serde_json::to_string_pretty(value).map_err(|error| self.failed(&error))?;
-        self.write(&format!("{json}\n"))
-    }
-
-    fn write(mut self, text: &str) -> Result<(), Failure> {
-        self.partial.write_all(text.as_bytes()).map_err(|error| self.failed(&error))?;
-        let Self { path, partial } = self;
-        partial
-            .persist(&path)
-            .map(drop)
-            .map_err(|error| Failure::Failed(format!("cannot write {}: {}", path.display(), error.error)))
-    }
 }

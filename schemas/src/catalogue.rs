@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde_json::Value;
 
-use crate::{calibration, doctor, episode, events, experiment, journal, model, report, tape, tools};
+use crate::{calibration, doctor, episode, events, experiment, journal, map, model, report, tape, tools};
 
 fn schema_of<T: JsonSchema>() -> Value {
     let mut schema = SchemaGenerator::from(SchemaSettings::draft2020_12()).into_root_schema_for::<T>();
@@ -28,6 +28,7 @@ pub fn strip_number_formats(schema: &mut schemars::Schema) {
 pub fn schemas() -> Vec<(&'static str, Value)> {
     vec![
         ("diagnosis.schema.json", schema_of::<doctor::Diagnosis>()),
+        ("home-map.schema.json", schema_of::<map::HomeMap>()),
         ("episode.schema.json", schema_of::<episode::Episode>()),
         ("caption-line.schema.json", schema_of::<episode::CaptionLine>()),
         ("truth.schema.json", schema_of::<episode::Truth>()),

@@ -13,6 +13,7 @@ pub mod events;
 pub mod experiment;
 pub mod household;
 pub mod journal;
+pub mod map;
 pub mod model;
 pub mod report;
 pub mod tape;

@@ -6,10 +6,14 @@
 #[doc(hidden)]
 pub mod cli;
 mod cursor;
+pub mod display;
 mod doctor;
 pub mod episode;
 mod hosts;
+mod map;
 mod near_miss;
+pub mod output_file;
+pub mod pages;
 mod scene;
 pub mod service;
 pub mod store;

@@ -4,14 +4,11 @@ pub(crate) mod conclusions;
 pub mod events;
 pub(crate) mod layout;
 pub mod narration;
-mod plain_text;
 pub mod printer;
 pub mod style;
 pub mod table;
 
 pub use events::{EventLog, EventLogError};
 pub use narration::{Changed, Narration};
-pub(crate) use plain_text::excerpt;
-pub use plain_text::plain_text;
 pub use printer::{Printer, Progress, ResultFormat};
 pub use style::{Colour, Style};

@@ -7,10 +7,11 @@ use std::io::{self, Write};
 
 use coin_schemas::household::{ClassLabel, ObjectId, Owners, UserName, Users};
 use coin_schemas::report::AnswerStatus;
+use coin_server::display::{count, names_with_and, owners_in_words, percent, plain_text};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::layout::{count, labelled, names_with_and, owners_in_words, percent};
-use super::{Style, plain_text};
+use super::Style;
+use super::layout::labelled;
 use crate::person::PersonKind;
 
 /// How many changed things a line lists.

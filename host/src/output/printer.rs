@@ -4,10 +4,11 @@ use std::io::{self, ErrorKind, Write};
 
 use coin_schemas::household::Users;
 use coin_schemas::report::Report;
+use coin_server::display::plain_text;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::narration::{Bars, Narration};
-use super::{Style, plain_text, table};
+use super::{Style, table};
 use crate::person::PersonKind;
 
 /// In which form the result appears on stdout.

@@ -10,11 +10,12 @@ use std::borrow::Cow;
 
 use coin_schemas::household::{Background, Owners, Users};
 use coin_schemas::report::Report;
+use coin_server::display::{owners_in_words, plain_text};
 use comfy_table::{Cell, CellAlignment, TableComponent};
 
-use super::conclusions::{facts, how_sure, is_wrong, owners_in_words, whose, why};
+use super::Style;
+use super::conclusions::{facts, how_sure, is_wrong, whose, why};
 use super::layout::{columns, labelled};
-use super::{Style, plain_text};
 
 /// The mark of an owner set that is not the true one.
 const WRONG: &str = "✗";

@@ -5,11 +5,11 @@ mod figures;
 mod tests;
 
 use coin_schemas::experiment::{ExperimentResults, Guarantee, Method, MethodResults};
+use coin_server::pages::page;
 use maud::{Markup, PreEscaped, html};
 
 pub use figures::{Figure, figures};
 
-use super::page;
 use super::table::Table;
 
 /// How a method is called in tables and figures.
@@ -69,7 +69,7 @@ pub fn index(results: &ExperimentResults, tables: &[Table], figures: &[Figure]) 
             section #how { (how(results)) }
         }
     };
-    page("Whose is this? The experiment", "", None, &body)
+    page("Whose is this? The experiment", &[], None, &body)
 }
 
 fn headline(results: &ExperimentResults) -> String {

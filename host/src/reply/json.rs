@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use coin_server::display::excerpt;
 use serde::de::{DeserializeOwned, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Number, Value};
 use thiserror::Error;
 
 use super::{UnreadableReply, check_length};
-use crate::output::excerpt;
 
 /// Why a reply is not the JSON that was asked for.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

@@ -1,11 +1,11 @@
 //! Reading the one question that a model worded.
 
+use coin_server::display::excerpt;
 use pulldown_cmark::{Event, Parser};
 use serde::de::IgnoredAny;
 use thiserror::Error;
 
 use super::{UnreadableReply, check_length};
-use crate::output::excerpt;
 
 /// The longest question that a person is asked, in characters.
 pub const MOST_CHARACTERS: usize = 300;

@@ -15,6 +15,7 @@ use coin_schemas::model::{
     OwnershipReply, OwnershipsReply, ReadingReply, RelatedObjects, SharingReply, Task,
 };
 use coin_schemas::report::{ContextSource, Cost, Estimator, Scoring, Withheld};
+use coin_server::display::excerpt;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
@@ -23,7 +24,6 @@ use crate::model::{
     ChatModel, ChatReply, ChatRequest, Ending, ModelError, ReplyFormat, ToolArguments, ToolCall,
     ToolDefinition,
 };
-use crate::output::excerpt;
 use crate::prompts;
 use crate::reply::{read_json, read_sentence};
 use conversation::{Conversation, Shown};

@@ -3,6 +3,7 @@
 mod doctor;
 mod import;
 mod install;
+mod map;
 mod serve;
 mod uninstall;
 
@@ -23,6 +24,7 @@ Examples:
   coin-server --db home.db --http 127.0.0.1:8750 # serve many clients on this computer
   coin-server --db home.db --http 0.0.0.0:8750 --token-file token.txt    # and for other computers
   coin-server install claude-desktop             # or claude-code, cursor, vscode
+  coin-server map --db home.db --html home.html  # the plan of the home: whose is what, and how sure
   coin-server doctor                             # what is wrong, if anything
 
 Exit status: 0 done; 1 failed; 2 wrong use, a refused episode, or a database or address that cannot be opened.
@@ -46,6 +48,8 @@ enum Command {
     Install(install::Install),
     /// Take the server out of the configuration of such a program
     Uninstall(uninstall::Uninstall),
+    /// Draw the plan of the home, or list it: rooms, things, whose they are and how sure that is; nothing is changed
+    Map(map::Map),
     /// Say what is wrong with the database, its permissions and the programs that use it; nothing is changed
     Doctor(doctor::Doctor),
 }
@@ -91,6 +95,7 @@ pub fn run() -> ExitCode {
         Some(Command::Import(import)) => import::run(import).map(|()| Exit::Done),
         Some(Command::Install(install)) => install::run(install).map(|()| Exit::Done),
         Some(Command::Uninstall(uninstall)) => uninstall::run(uninstall).map(|()| Exit::Done),
+        Some(Command::Map(map)) => map::run(map).map(|()| Exit::Done),
         Some(Command::Doctor(doctor)) => doctor::run(doctor),
         None => serve::run(&arguments.serve).map(|()| Exit::Done),
     };

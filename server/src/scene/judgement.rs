@@ -129,6 +129,20 @@ impl Scene<'_> {
         }
     }
 
+    /// Judges every thing, by id.
+    ///
+    /// # Errors
+    /// Failures of the database; for each thing also that nobody waits for the call any more.
+    pub(crate) fn judgements(
+        &self,
+    ) -> Result<impl Iterator<Item = Result<(&StoredObject, Judgement), StoreError>>, StoreError> {
+        self.beliefs()?;
+        Ok(self.objects()?.iter().map(|object| {
+            self.reader.go_on()?;
+            Ok((object, self.judge(object, Moment::Present)?))
+        }))
+    }
+
     fn answered(
         &self,
         answer: RecordedAnswer,

@@ -10,6 +10,7 @@ mod finding;
 mod finding_expressions;
 mod judging;
 mod lists;
+mod map;
 mod protocol;
 mod recording;
 mod refusals;

@@ -4,10 +4,9 @@ use std::error::Error;
 use std::io::ErrorKind;
 use std::time::Duration;
 
+use coin_server::display::excerpt;
 use serde_json::Value;
 use thiserror::Error;
-
-use crate::output::excerpt;
 
 /// How an attempt failed. No text in it holds the key: what comes from a server is cleared of it before.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

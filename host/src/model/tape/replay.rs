@@ -9,11 +9,11 @@ use std::sync::{Mutex, PoisonError};
 use async_trait::async_trait;
 use coin_schemas::model::{Task, TaskObject};
 use coin_schemas::tape::{Exchange, Fingerprint, Outcome};
+use coin_server::display::excerpt;
 
 use super::lines::{Line, next_line, read_exchange, read_header};
 use super::{TapeError, fingerprint, open_private};
 use crate::model::{ChatModel, ChatReply, ChatRequest, Message, ModelError, Origin};
-use crate::output::excerpt;
 
 /// A model that says again what another one said, without it.
 ///

@@ -1,10 +1,10 @@
 //! What a run took, why it ended, and what may be relied on.
 
 use coin_schemas::report::{ContextSource, Cost, Estimator, Gate, Report, Scoring, Stopped};
+use coin_server::display::{count, plain_text};
 
 use super::guarantee::guarantee;
-use super::{count, is_unsettled, is_wrong};
-use crate::output::plain_text;
+use super::{is_unsettled, is_wrong};
 
 /// Each with its label, in the order in which they are read.
 pub(crate) fn facts(report: &Report) -> Vec<(&'static str, String)> {

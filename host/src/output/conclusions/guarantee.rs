@@ -2,10 +2,9 @@
 
 use coin_schemas::calibration::{Calibration, History, NonconformityScore};
 use coin_schemas::report::{Gate, Report, Stopped};
+use coin_server::display::{count, percent, plain_text};
 
 use crate::calibrate::scored_by;
-use crate::output::layout::{count, percent};
-use crate::output::plain_text;
 
 /// What may be relied on, and from what data that follows.
 pub(crate) fn guarantee(report: &Report) -> String {

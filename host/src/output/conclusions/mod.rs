@@ -6,11 +6,8 @@ pub(crate) mod guarantee;
 
 use coin_schemas::household::{Owners, Scores, Source, UserName};
 use coin_schemas::report::{AnswerStatus, Gate, ObjectReport, QuestionReport, Report};
+use coin_server::display::{names, owners_in_words, percent, plain_text};
 
-use super::layout::names;
-use super::plain_text;
-
-pub(crate) use super::layout::{count, owners_in_words, percent};
 pub(crate) use facts::facts;
 
 /// How many people besides the owners are named as plausible; more are counted.

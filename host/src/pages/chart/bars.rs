@@ -1,8 +1,9 @@
 //! Groups of bars with the spread of each.
 
+use coin_server::pages::unit;
 use maud::{Markup, html};
 
-use super::{Look, Plot, Scale, WIDTH, frame, unit};
+use super::{Look, Plot, Scale, WIDTH, frame};
 
 /// A bar.
 #[derive(Debug, Clone, PartialEq)]

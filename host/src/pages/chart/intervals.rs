@@ -1,8 +1,9 @@
 //! Measured shares with their intervals, beside what was promised.
 
+use coin_server::pages::unit;
 use maud::{Markup, html};
 
-use super::{Look, Scale, WIDTH, frame, ticks, unit};
+use super::{Look, Scale, WIDTH, frame, ticks};
 
 /// A measured share.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use coin_server::pages::unit;
 use maud::{Markup, html};
 
-use super::{Look, Plot, Scale, WIDTH, frame, legend, legend_height, unit};
+use super::{Look, Plot, Scale, WIDTH, frame, legend, legend_height};
 
 /// A point of a curve and how far runs spread about it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,6 +15,7 @@ pub use lines::{LineChart, Point, Series, Shape};
 pub(crate) use scale::tenth_below;
 pub use scatter::{Dot, ScatterChart};
 
+use coin_server::pages::{colour, unit};
 use maud::{Markup, PreEscaped, html};
 use scale::{Scale, ticks};
 
@@ -25,7 +26,7 @@ const WIDTH: f64 = 640.0;
 const STYLE: &str = "\
 svg.chart{--ink:#1c2430;--muted:#566070;--line:#d9dee5;--c0:#0b62a3;--c1:#c4500a;--c2:#00795a;--c3:#a8447c;\
 --c4:#7a6200;--c5:#4a5ac0;--c6:#2f7f8c;--c7:#8a4b2a;--c8:#5b6472;font:13px system-ui,'Segoe UI',sans-serif}\
-@media(prefers-color-scheme:dark){svg.chart{--ink:#e6eaf0;--muted:#a2adbb;--line:#343d49;--c0:#5fb4f2;--c1:#ff9a56;\
+@media screen and (prefers-color-scheme:dark){svg.chart{--ink:#e6eaf0;--muted:#a2adbb;--line:#343d49;--c0:#5fb4f2;--c1:#ff9a56;\
 --c2:#3ecfa2;--c3:#f09bcb;--c4:#e2c44e;--c5:#a3aeff;--c6:#6fd3df;--c7:#d9a07c;--c8:#aab4c1}}\
 svg.chart text{fill:var(--ink)}svg.chart .faint{fill:var(--muted)}svg.chart .grid{stroke:var(--line)}\
 svg.chart .axis{stroke:var(--muted)}";
@@ -37,7 +38,7 @@ pub struct Look(pub usize);
 impl Look {
     /// The colour, as a variable that both schemes set.
     pub(crate) fn colour(self) -> String {
-        format!("var(--c{})", self.0 % 9)
+        colour(self.0)
     }
 
     fn dashes(self) -> &'static str {
@@ -56,12 +57,6 @@ impl Look {
             _ => path(format!("M{} {}l4.8 -8.4h-9.6z", unit(x), unit(y + 5.0))),
         }
     }
-}
-
-/// A coordinate as it is written; what is not finite would break the file.
-pub(crate) fn unit(value: f64) -> String {
-    let finite = if value.is_finite() { value } else { 0.0 };
-    format!("{:.1}", finite + 0.0)
 }
 
 /// A chart's frame: its name and description for whoever does not see it, and its style.

@@ -1,9 +1,10 @@
 //! Points with names, and paths between some of them.
 
+use coin_server::pages::unit;
 use maud::{Markup, html};
 
 use super::lines::Series;
-use super::{Look, Plot, Scale, WIDTH, frame, legend, legend_height, unit};
+use super::{Look, Plot, Scale, WIDTH, frame, legend, legend_height};
 
 /// A named point.
 #[derive(Debug, Clone, PartialEq)]

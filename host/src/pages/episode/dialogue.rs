@@ -2,11 +2,11 @@
 
 use coin_schemas::household::{ObjectId, Owners, Source};
 use coin_schemas::report::{AnswerStatus, QuestionReport};
+use coin_server::display::{owners_in_words, percent};
+use coin_server::pages::plan::Palette;
 use maud::{Markup, html};
 
-use super::plan::{Palette, name_and_room};
-use super::{Belief, EpisodePage, anchor, said};
-use crate::output::conclusions::{owners_in_words, percent};
+use super::{Belief, EpisodePage, anchor, name};
 
 pub(super) fn dialogue(input: EpisodePage<'_>, household: &Owners, palette: &Palette<'_>) -> Markup {
     if input.report.questions.is_empty() {
@@ -61,7 +61,7 @@ fn was(before: &Belief, owners: &Owners, household: &Owners) -> String {
     if before.owners == *owners {
         format!(", as thought ({} sure)", percent(before.confidence))
     } else {
-        format!(" (before: {})", said(before, household))
+        format!(" (before: {})", before.in_words(household))
     }
 }
 
@@ -70,7 +70,7 @@ fn link(id: &ObjectId, input: EpisodePage<'_>) -> Markup {
     let found = input.episode.objects.iter().enumerate().find(|(_, object)| object.id == *id);
     html! {
         @match found {
-            Some((place, object)) => { a href=(format!("#{}", anchor(place))) { (name_and_room(object)) } }
+            Some((place, object)) => { a href=(format!("#{}", anchor(place))) { (name(object)) } }
             None => { (id) }
         }
     }

@@ -5,23 +5,21 @@
 //! evidence beside the plan for whatever is pointed at, and goes back through the questions.
 
 mod dialogue;
-mod plan;
-#[cfg(test)]
-mod tests;
 mod things;
 
 use std::collections::BTreeMap;
 
-use coin_schemas::episode::Episode;
-use coin_schemas::household::{Background, ObjectId, Owners, Source};
+use coin_schemas::episode::{Episode, EpisodeObject};
+use coin_schemas::household::{ObjectId, Owners, Source};
 use coin_schemas::report::{AnswerStatus, Report};
+use coin_server::display::{belief_in_words, owners_in_words, percent};
+use coin_server::pages::page;
+use coin_server::pages::plan::{self, MarkState, Palette, PlacedThing, name_and_room, plan};
 use maud::{Markup, html};
 
 use super::chart::{LineChart, Look, Point, Series, Shape, tenth_below};
-use super::page;
 use crate::evidence::Evidence;
-use crate::output::conclusions::{facts, is_wrong, owners_in_words, percent};
-use plan::{MarkState, Palette, PlacedThing, plan, sizes};
+use crate::output::conclusions::{facts, is_wrong};
 
 const STYLE: &str = include_str!("episode.css");
 const SCRIPT: &str = include_str!("episode.js");
@@ -41,6 +39,11 @@ impl Belief {
     /// How much room there is for another answer, 0…1.
     fn doubt(&self) -> f64 {
         1.0 - self.confidence
+    }
+
+    /// `Bob, 96 % sure`.
+    fn in_words(&self, household: &Owners) -> String {
+        belief_in_words(&owners_in_words(&self.owners, household), self.confidence, self.source)
     }
 }
 
@@ -87,12 +90,7 @@ pub fn episode(input: EpisodePage<'_>) -> String {
                     "Every thing at its place, in the colours of its owners; the larger, the more doubt. Point at one, or \
                      go through them with the tab key, to see why. A ring is around what was asked about last."
                 }
-                ul.legend aria-label="Who lives here" {
-                    @for (name, background) in &episode.users {
-                        li { (palette.swatch(&Owners::from([name.clone()]))) (name) (in_brackets(background)) }
-                    }
-                    (sizes())
-                }
+                (plan::legend(&episode.users, &palette))
                 @if questions > 0 {
                     p.replay hidden {
                         label for="step" { "Questions asked so far" }
@@ -101,7 +99,7 @@ pub fn episode(input: EpisodePage<'_>) -> String {
                     }
                 }
                 div.beside {
-                    div.drawing { (plan(&placed, &palette)) }
+                    div.drawing { (plan("Plan of the home.", &placed, &palette)) }
                     aside #evidence hidden tabindex="-1" aria-label="What is known of the thing" {}
                 }
             }
@@ -135,18 +133,17 @@ pub fn episode(input: EpisodePage<'_>) -> String {
             }
         }
     };
-    page(&format!("Whose is this? {}", episode.name), STYLE, Some(SCRIPT), &body)
+    page(&format!("Whose is this? {}", episode.name), &[plan::STYLE, STYLE], Some(SCRIPT), &body)
+}
+
+/// What the page calls a thing.
+fn name(object: &EpisodeObject) -> String {
+    name_and_room(object.class.as_str(), object.room.as_deref())
 }
 
 /// The id of the element that describes the thing at a place in the episode.
 fn anchor(place: usize) -> String {
     format!("thing-{place}")
-}
-
-fn in_brackets(background: &Background) -> String {
-    let parts: Vec<&str> =
-        [&background.role, &background.occupation].into_iter().flatten().map(String::as_str).collect();
-    if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
 }
 
 fn lead(report: &Report) -> String {
@@ -197,18 +194,28 @@ fn key_figures(report: &Report) -> Markup {
 /// Every thing with the states of its mark.
 fn placed<'a>(input: EpisodePage<'a>, household: &Owners) -> Vec<PlacedThing<'a>> {
     let EpisodePage { episode, report, history, evidence } = input;
-    let of_thing = |(place, object): (usize, &'a coin_schemas::episode::EpisodeObject)| {
+    let of_thing = |(place, object): (usize, &'a EpisodeObject)| {
         let mut states: Vec<MarkState<'a>> = Vec::new();
+        let mut held: Option<&Belief> = None;
         for (step, beliefs) in history.iter().enumerate() {
             let Some(belief) = beliefs.get(&object.id) else { continue };
             match states.last_mut() {
-                Some(last) if last.belief == belief => last.to = step,
-                _ => states.push(MarkState { from: step, to: step, belief, said: said(belief, household) }),
+                Some(last) if held == Some(belief) => last.to = step,
+                _ => states.push(MarkState {
+                    from: step,
+                    to: step,
+                    owners: &belief.owners,
+                    doubt: belief.doubt(),
+                    said: belief.in_words(household),
+                }),
             }
+            held = Some(belief);
         }
         let asked = report.questions.iter().filter(|asked| asked.object_id == object.id);
         PlacedThing {
-            object,
+            class: object.class.as_str(),
+            room: object.room.as_deref(),
+            position: object.position,
             link: anchor(place),
             hint: evidence.get(&object.id).map_or(String::new(), things::hint),
             states,
@@ -216,15 +223,6 @@ fn placed<'a>(input: EpisodePage<'a>, household: &Owners) -> Vec<PlacedThing<'a>
         }
     };
     episode.objects.iter().enumerate().map(of_thing).collect()
-}
-
-/// `Bob, 96 % sure`.
-fn said(belief: &Belief, household: &Owners) -> String {
-    let whose = owners_in_words(&belief.owners, household);
-    match belief.source {
-        Source::Answer => format!("{whose}, as was answered"),
-        Source::Inferred => format!("{whose}, {} sure", percent(belief.confidence)),
-    }
 }
 
 /// Accuracy after each question; where nobody knows the truth, how sure COIN is.

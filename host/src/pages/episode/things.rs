@@ -4,12 +4,13 @@ use coin_schemas::episode::EpisodeObject;
 use coin_schemas::household::{Owners, Scores, Source, UserName};
 use coin_schemas::report::{ObjectReport, Report};
 use coin_schemas::tools::{KnownOwnership, UsageSummary};
+use coin_server::display::{count, owners_in_words, percent};
+use coin_server::pages::plan::Palette;
 use maud::{Markup, html};
 
-use super::anchor;
-use super::plan::{Palette, name_and_room};
+use super::{anchor, name};
 use crate::evidence::Evidence;
-use crate::output::conclusions::{count, how_sure, is_wrong, owners_in_words, percent, whose, why};
+use crate::output::conclusions::{how_sure, is_wrong, whose, why};
 
 /// A thing and all that is said of it.
 pub(super) struct Thing<'a> {
@@ -39,7 +40,7 @@ pub(super) fn thing(thing: &Thing<'_>) -> Markup {
     html! {
         details.thing {
             summary {
-                span.name { (name_and_room(object)) }
+                span.name { (name(object)) }
                 span.owners { (palette.swatch(&of_report.owners)) (whose(of_report, household)) }
                 span.sure { (how_sure(of_report)) }
                 span.why { (why(report, of_report)) }
@@ -48,7 +49,7 @@ pub(super) fn thing(thing: &Thing<'_>) -> Markup {
                 }
             }
             article id=(anchor(place)) {
-                h3 { (name_and_room(object)) }
+                h3 { (name(object)) }
                 p.verdict {
                     (palette.swatch(&of_report.owners)) " " strong { (whose(of_report, household)) }
                     ", " (how_sure(of_report)) " sure: " (why(report, of_report)) "."

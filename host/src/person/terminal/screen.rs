@@ -1,11 +1,12 @@
 //! What somebody at the terminal sees.
 
 use coin_schemas::household::{Owners, UserName};
+use coin_server::display::{count, names_with_and, percent, plain_text};
 use console::{measure_text_width, truncate_str};
 
 use super::choices::Choices;
-use crate::output::layout::{count, labelled, names_with_and, percent};
-use crate::output::{Style, plain_text};
+use crate::output::Style;
+use crate::output::layout::labelled;
 use crate::person::PutQuestion;
 
 /// Where text begins, behind the number of the question; the same as in the story of the run.

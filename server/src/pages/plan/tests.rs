@@ -4,7 +4,6 @@ use coin_schemas::household::UserName;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use super::plan::{Palette, Spot, layout, radius};
 use super::*;
 
 fn names(text: &str) -> Vec<UserName> {
@@ -26,7 +25,7 @@ proptest! {
         let drawn = layout(&positions, &radii);
         prop_assert_eq!(drawn.marks.len(), things.len());
         for (mark, radius) in drawn.marks.iter().zip(&radii) {
-            prop_assert!(mark.x >= *radius && mark.x <= 720.0 - radius, "{mark:?}");
+            prop_assert!(mark.x >= *radius && mark.x <= drawn.width - radius, "{mark:?}");
             prop_assert!(mark.y >= *radius && mark.y <= drawn.height - radius, "{mark:?}");
         }
     }
@@ -102,4 +101,50 @@ fn backgrounds_are_said_as_far_as_they_are_known() {
     assert_eq!(in_brackets(&background(Some("father"), Some("cook"))), " (father, cook)");
     assert_eq!(in_brackets(&background(None, Some("cook"))), " (cook)");
     assert_eq!(in_brackets(&background(None, None)), "");
+}
+
+#[test]
+fn names_cover_neither_marks_nor_each_other() {
+    let heap: Vec<[f64; 3]> =
+        (0..60).map(|place| [f64::from(place % 9) * 0.5, f64::from(place / 9) * 0.4, 0.0]).collect();
+    let radii: Vec<f64> = (0..60).map(|place| radius(f64::from(place % 11) / 10.0)).collect();
+    let drawn = layout(&heap, &radii);
+    let marks: Vec<Nameless<'_>> = drawn
+        .marks
+        .iter()
+        .zip(&radii)
+        .map(|(&at, &radius)| Nameless { at, radius, name: "building blocks", room: None })
+        .collect();
+    let placed: Vec<Area> =
+        labels(&marks, &[], &drawn, Vec::new()).into_iter().flatten().map(|label| label.area).collect();
+    assert!(placed.len() > 5 && placed.len() < 60, "{} have a name", placed.len());
+    for (place, label) in placed.iter().enumerate() {
+        assert!(drawn.sheet().contains(label));
+        assert!(marks.iter().all(|mark| !Area::around(mark.at, mark.radius).meets(label)));
+        assert!(placed[place + 1..].iter().all(|other| !other.meets(label)));
+    }
+}
+
+#[test]
+fn a_name_stays_in_its_room_where_it_can() {
+    let drawn = layout(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]], &[9.5; 2]);
+    let at = drawn.marks[0];
+    let mark = Nameless { at, radius: 9.5, name: "mug", room: Some(0) };
+    let room = Area { left: at.x - 40.0, ..Area::around(at, 12.0) };
+    let label = labels(&[mark], &[room], &drawn, Vec::new()).remove(0).unwrap();
+    assert_eq!(label.anchor, "end", "the left is inside, the right is not");
+}
+
+#[test]
+fn a_crowd_gets_a_larger_sheet() {
+    let usual = layout(&[[0.0; 3]; 30], &[LARGEST; 30]);
+    let crowded = layout(&[[0.0; 3]; 3_000], &[LARGEST; 3_000]);
+    assert_eq!(usual.width, 720.0);
+    assert!(crowded.width > 2_000.0, "{}", crowded.width);
+}
+
+#[test]
+fn long_names_are_cut_off() {
+    assert_eq!(shortened("mug", 3), "mug");
+    assert_eq!(shortened("mugs", 3), "mu…");
 }

@@ -18,7 +18,7 @@ pub fn plain_text(text: &str) -> Cow<'_, str> {
 const LONGEST_EXCERPT: usize = 200;
 
 /// As much of foreign words as an error may repeat: how they begin, in one line and safe to show.
-pub(crate) fn excerpt(text: &str) -> String {
+pub fn excerpt(text: &str) -> String {
     // Far more than is shown, so that a long run of white space does not empty the excerpt.
     let beginning: String = text.chars().take(20 * LONGEST_EXCERPT).collect();
     let line = plain_text(&beginning).split_whitespace().collect::<Vec<_>>().join(" ");
