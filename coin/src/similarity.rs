@@ -1,5 +1,11 @@
 //! Visual context: which things look like a thing (the paper's Section 4.3, "Visually Similar Object Retrieval").
 
+mod clusters;
+mod quick;
+
+pub use clusters::{middles, nearest};
+pub use quick::{Code, Probe, QUICK_ERROR, Shortlist, quick_cosine};
+
 /// A thing that looks like another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Similar<T> {

@@ -24,6 +24,18 @@ impl Default for Neighbourhood {
     }
 }
 
+impl Neighbourhood {
+    /// A distance in metres beyond which no thing has the least weight; infinite where every weight is enough.
+    pub fn radius(&self) -> f64 {
+        if self.min_weight <= 0.0 {
+            return f64::INFINITY;
+        }
+        let scaled = libm::sqrt((-2.0 * libm::log(self.min_weight)).max(0.0));
+        // Weights are rounded, which carries a thing a little farther, most of all where weights are next to 0 or 1.
+        self.sigma * (1.001 * scaled + 1e-6)
+    }
+}
+
 /// A thing near another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Near<T> {

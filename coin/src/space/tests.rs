@@ -33,6 +33,18 @@ proptest! {
     }
 
     #[test]
+    fn nothing_beyond_the_radius_has_the_least_weight(
+        sigma in 0.001..1000.0_f64,
+        exponent in 0.0..744.0_f64,
+        beyond in 1.0..2.0_f64,
+    ) {
+        let reach = Neighbourhood { sigma, min_weight: libm::exp(-exponent), ..Neighbourhood::default() };
+        prop_assert!(weight(reach.radius() * beyond, sigma) < reach.min_weight);
+        // It is no more than a hundredth too large, but for weights next to 1.
+        prop_assert!(exponent < 1e-4 || weight(reach.radius() / 1.01, sigma) >= reach.min_weight);
+    }
+
+    #[test]
     fn gamma_scales_height_alone(a in any_position(), height in -5.0..5.0_f64, gamma in 0.0..4.0_f64) {
         let [x, y, z] = a.metres();
         prop_assert!((distance(a, at([x, y, z + height]), gamma) - gamma * height.abs()).abs() < ROUNDING);

@@ -11,7 +11,6 @@ mod usage;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
-use coin::similarity::normalise;
 use jiff::Zoned;
 use jiff::civil::DateTime;
 
@@ -26,7 +25,7 @@ pub(crate) struct Scene<'a> {
     reader: &'a Reader<'a>,
     household: Household,
     objects: OnceCell<Vec<StoredObject>>,
-    looks: OnceCell<Vec<Option<Vec<f32>>>>,
+    has_few_objects: OnceCell<bool>,
     beliefs: OnceCell<BTreeMap<ObjectKey, Belief>>,
 }
 
@@ -41,7 +40,7 @@ impl<'a> Scene<'a> {
             reader,
             household,
             objects: OnceCell::new(),
-            looks: OnceCell::new(),
+            has_few_objects: OnceCell::new(),
             beliefs: OnceCell::new(),
         })
     }
@@ -61,14 +60,9 @@ impl<'a> Scene<'a> {
         Ok(filled(&self.objects, || self.reader.objects())?)
     }
 
-    /// What all things look like, in the order of [`Self::objects`]: features of length 1, where there are any.
-    fn looks(&self) -> Result<&[Option<Vec<f32>>], StoreError> {
-        Ok(filled(&self.looks, || {
-            let features = self.reader.features()?;
-            let look =
-                |object: &StoredObject| features.get(&object.key).and_then(|feature| normalise(feature));
-            Ok(self.objects()?.iter().map(look).collect())
-        })?)
+    /// Whether there are so few things that it is quickest to read all of them.
+    fn has_few_objects(&self) -> Result<bool, StoreError> {
+        filled(&self.has_few_objects, || self.reader.has_few_objects()).copied()
     }
 
     /// Reads all beliefs at once, for a call that looks at every thing.

@@ -6,7 +6,7 @@ use coin_schemas::tools::{LookAlike, Neighbour, display_name};
 
 use super::Scene;
 use super::known_ownership::known_ownership;
-use crate::store::{StoreError, StoredObject};
+use crate::store::{Alike, StoreError, StoredObject};
 
 /// What came of looking for things that look like a thing.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,8 +26,14 @@ impl Scene<'_> {
         object: &StoredObject,
         reach: &Neighbourhood,
     ) -> Result<Vec<Neighbour>, StoreError> {
+        let around;
         // They come by id, so their place stands for the id where weights and distances are equal.
-        let objects = self.objects()?;
+        let objects = if self.has_few_objects()? {
+            self.objects()?
+        } else {
+            around = self.reader.around(object, reach)?;
+            &around
+        };
         let others = objects.iter().enumerate().filter(|(_, other)| other.key != object.key);
         let near = neighbours(object.position, others.map(|(place, other)| (place, other.position)), reach);
         near.into_iter()
@@ -48,24 +54,15 @@ impl Scene<'_> {
 
     /// The things that look like a thing, most similar first.
     pub(crate) fn look_alikes(&self, object: &StoredObject, k: usize) -> Result<LookAlikes, StoreError> {
-        let (objects, looks) = (self.objects()?, self.looks()?);
-        let own_place = objects.iter().position(|other| other.key == object.key);
-        let Some(target) = own_place.and_then(|place| looks[place].as_deref()) else {
-            return Ok(LookAlikes::NeverSeen);
+        let (look, others) = match self.reader.alike(object.key, k)? {
+            Alike::NeverSeen => return Ok(LookAlikes::NeverSeen),
+            Alike::Found { others, .. } if others.is_empty() => return Ok(LookAlikes::NothingToCompare),
+            Alike::Found { look, others } => (look, others),
         };
-        // Objects come by id, so their place stands for the id where similarities are equal.
-        let mut others = looks
-            .iter()
-            .enumerate()
-            .filter(|(place, _)| Some(*place) != own_place)
-            .filter_map(|(place, look)| Some((place, look.as_deref()?)))
-            .peekable();
-        if others.peek().is_none() {
-            return Ok(LookAlikes::NothingToCompare);
-        }
-        let alike = most_similar(target, others, k);
+        // They come by id, so their place stands for the id where similarities are equal.
+        let alike = most_similar(&look, others.iter().map(|other| other.look.as_slice()).enumerate(), k);
         let found = alike.into_iter().map(|similar| {
-            let other = &objects[similar.item];
+            let other = &others[similar.item].object;
             let belief = self.belief(other.key)?;
             Ok(LookAlike {
                 id: other.id.clone(),

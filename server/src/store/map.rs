@@ -61,6 +61,18 @@ impl Reader<'_> {
         Ok(statement.query_row([id], |row| row.get(0)).optional()?.map(ObjectKey))
     }
 
+    /// The thing of this key, which the database has.
+    pub(super) fn stored(&self, key: ObjectKey) -> Result<StoredObject, StoreError> {
+        let mut statement = self.connection.prepare_cached(
+            "SELECT object_key, id, class, x, y, z, room FROM objects WHERE object_key = ?1",
+        )?;
+        let mut rows = statement.query([key.0])?;
+        match rows.next()? {
+            Some(row) => StoredObject::from_row(row),
+            None => Err(StoreError::damaged(format!("an index has object {}, which is not there", key.0))),
+        }
+    }
+
     /// All things, by id.
     ///
     /// # Errors
@@ -137,6 +149,6 @@ impl Writer<'_> {
     }
 }
 
-fn from_bytes(bytes: &[u8]) -> Vec<f32> {
+pub(super) fn from_bytes(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks::<4>().0.iter().map(|&component| f32::from_le_bytes(component)).collect()
 }

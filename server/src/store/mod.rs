@@ -16,11 +16,15 @@ mod error;
 mod forms;
 mod household;
 mod import;
+mod indexing;
 mod inspection;
+mod lists;
+mod looks;
 mod map;
 mod migrations;
 mod newcomers;
 mod open;
+mod places;
 #[cfg(test)]
 mod tests;
 mod usage;
@@ -38,12 +42,15 @@ pub use error::{BUSY_SECONDS, StoreError};
 pub use forms::{FORM_KEY_BYTES, FormSerial, SERIAL_BYTES, Spending};
 pub use household::{Household, UserKey};
 pub use import::ImportSummary;
+pub use indexing::LookIndexing;
 pub use inspection::Inspection;
+pub(crate) use looks::Alike;
 pub use map::{ObjectKey, StoredObject};
 pub(crate) use usage::EVENTS_BETWEEN_REPORTS;
 pub use usage::{UsageCounts, UsageLog, UsageRecord};
 
 use connections::Connections;
+use looks::KeptLooks;
 
 /// What may be done with a store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -60,6 +67,7 @@ pub enum Access {
 #[derive(Debug, Clone)]
 pub struct Store {
     connections: Arc<Connections>,
+    looks: Arc<KeptLooks>,
     access: Access,
     call: Call,
 }
@@ -71,7 +79,7 @@ impl Store {
     /// [`StoreError::Open`], which names the file and the reason.
     pub fn open(path: &Path, access: Access) -> Result<Self, StoreError> {
         let connections = Connections::to_file(path, access).map_err(|source| source.opening(path))?;
-        Ok(Self { connections: Arc::new(connections), access, call: Call::default() })
+        Ok(Self { connections: Arc::new(connections), looks: Arc::default(), access, call: Call::default() })
     }
 
     /// Opens a store that is gone when it is dropped.
@@ -80,7 +88,7 @@ impl Store {
     /// If there is no memory left.
     pub fn open_in_memory() -> Result<Self, StoreError> {
         let connections = Arc::new(Connections::to_memory()?);
-        Ok(Self { connections, access: Access::ReadWrite, call: Call::default() })
+        Ok(Self { connections, looks: Arc::default(), access: Access::ReadWrite, call: Call::default() })
     }
 
     /// What the store was opened for.
@@ -117,7 +125,11 @@ impl Store {
         // The visit ends before the transaction does: an interruption must not hit its end.
         let moment = Moment::begin(connection)?;
         let _visit = self.call.enter(connection)?;
-        work(&Reader { connection: moment.connection, call: &self.call })
+        work(&self.reader(moment.connection, Sight::Committed))
+    }
+
+    fn reader<'a>(&'a self, connection: &'a Connection, sight: Sight) -> Reader<'a> {
+        Reader { connection, call: &self.call, looks: &self.looks, sight }
     }
 
     /// Changes the home, all or nothing: where `work` fails, nothing of it is kept.
@@ -128,6 +140,15 @@ impl Store {
         &self,
         work: impl FnOnce(&Writer<'_>) -> Result<T, E>,
     ) -> Result<T, E> {
+        let (value, revision) = self.change(|writer| {
+            let value = work(writer)?;
+            Ok::<_, E>((value, writer.feature_revision()?))
+        })?;
+        self.look_after_index(revision);
+        Ok(value)
+    }
+
+    fn change<T, E: From<StoreError>>(&self, work: impl FnOnce(&Writer<'_>) -> Result<T, E>) -> Result<T, E> {
         let mut connection = self.connections.writer()?;
         self.call.go_on()?;
         let transaction =
@@ -135,7 +156,7 @@ impl Store {
         let value = {
             // An interruption reaches the work, but neither the commit nor the end of what is given up.
             let _visit = self.call.enter(&transaction)?;
-            work(&Writer { reader: Reader { connection: &transaction, call: &self.call } })?
+            work(&Writer { reader: self.reader(&transaction, Sight::Uncommitted) })?
         };
         self.call.go_on()?;
         transaction.commit().map_err(StoreError::from)?;
@@ -148,6 +169,17 @@ impl Store {
 pub struct Reader<'connection> {
     connection: &'connection Connection,
     call: &'connection Call,
+    looks: &'connection KeptLooks,
+    sight: Sight,
+}
+
+/// What a transaction sees of the home.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sight {
+    /// What was committed, and nothing else.
+    Committed,
+    /// Also what it has written itself, which may not be kept.
+    Uncommitted,
 }
 
 impl Reader<'_> {
