@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::client::{ServerError, ToolServer};
 use crate::home::{self, HomeError};
-use crate::output::plain_text;
+use coin_server::display::plain_text;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -1,7 +1,7 @@
 //! How much things look like what somebody describes.
 
 use coin::referring::likenesses;
-use coin::similarity::cosine;
+use coin::similarity::{cosine, normalise};
 use coin_schemas::household::Score;
 
 use super::Scene;
@@ -14,8 +14,11 @@ impl Scene<'_> {
     /// # Errors
     /// Failures of the database.
     pub(crate) fn likenesses(&self, feature: &[f32]) -> Result<Vec<Option<Score>>, StoreError> {
-        let cosines: Vec<Option<f64>> =
-            self.looks()?.iter().map(|look| Some(cosine(feature, look.as_deref()?))).collect();
-        Ok(likenesses(&cosines))
+        let features = self.reader.features()?;
+        let cosines = self.objects()?.iter().map(|object| {
+            let look = normalise(features.get(&object.key)?)?;
+            Some(cosine(feature, &look))
+        });
+        Ok(likenesses(&cosines.collect::<Vec<_>>()))
     }
 }
