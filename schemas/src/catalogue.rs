@@ -62,6 +62,8 @@ pub fn schemas() -> Vec<(&'static str, Value)> {
         ("list-objects.result.schema.json", schema_of::<tools::ListObjectsResult>()),
         ("list-users.arguments.schema.json", schema_of::<tools::ListUsers>()),
         ("list-users.result.schema.json", schema_of::<tools::ListUsersResult>()),
+        ("observe-objects.arguments.schema.json", schema_of::<tools::ObserveObjects>()),
+        ("observe-objects.result.schema.json", schema_of::<tools::ObserveObjectsResult>()),
         ("find-object.arguments.schema.json", schema_of::<tools::FindObject>()),
         ("find-object.result.schema.json", schema_of::<tools::FindObjectResult>()),
         ("whose-is.arguments.schema.json", schema_of::<tools::WhoseIs>()),

@@ -12,6 +12,7 @@ pub mod episode;
 mod hosts;
 mod map;
 mod near_miss;
+mod observations;
 pub mod output_file;
 pub mod pages;
 mod scene;

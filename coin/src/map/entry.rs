@@ -117,6 +117,13 @@ impl Entry {
         }
     }
 
+    /// A thing that is known without having been detected; what is known of it counts as one sighting, and its class
+    /// stays what it is.
+    pub fn recorded(id: EntryId, number: SightingId, seen: Seen) -> Self {
+        let recorded = Some(seen.sighting.class.clone());
+        Self { recorded, ..Self::new(id, number, seen) }
+    }
+
     /// The entry that some sightings make; `None` where there are none. Of `moves` those stay that have sightings
     /// before and after them.
     pub(super) fn from_sightings(id: EntryId, sightings: Sightings, moves: &[Move]) -> Option<Self> {

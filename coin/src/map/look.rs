@@ -17,6 +17,18 @@ impl Look {
         look
     }
 
+    /// The look of this weighted sum of features, as [`Self::sum`] gave it.
+    pub fn of_sum(sum: Vec<f64>) -> Self {
+        let mut look = Self { sum, length: 0.0 };
+        look.measure();
+        look
+    }
+
+    /// The weighted sum of the features.
+    pub fn sum(&self) -> &[f64] {
+        &self.sum
+    }
+
     /// Adds a feature of length 1 and the same dimension.
     pub fn add(&mut self, feature: &[f32], weight: f64) {
         for (sum, &component) in self.sum.iter_mut().zip(feature) {

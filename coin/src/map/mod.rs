@@ -12,7 +12,6 @@
 //! [`SemanticMap::perhaps_moved`] says between which things a person would have to decide. If both change places between
 //! two views, nothing in position or look shows it: each entry goes on with the other's thing. Only a person, or how the things
 //! are used, can tell.
-
 //!
 //! # Where it breaks
 //!
@@ -45,6 +44,7 @@ pub mod tour;
 use std::collections::{BTreeMap, BTreeSet};
 
 use coin_schemas::household::ClassLabel;
+use jiff::civil::DateTime;
 
 use association::associate;
 use detection::{Refusal, Seen, Sighting, View, ViewId};
@@ -147,10 +147,15 @@ pub struct SemanticMap {
     grid: Grid,
     /// The entries that enough views have confirmed, by class.
     confirmed: BTreeMap<ClassLabel, BTreeSet<EntryId>>,
+    /// The entries of the sightings that are of no view, so that one that is handed in again is known.
+    viewless: BTreeMap<Moment, EntryId>,
     /// The entries that were made, changed or withdrawn since it was last asked.
     changed: BTreeSet<EntryId>,
     history: Vec<Change>,
 }
+
+/// When, where and as what something was seen: what tells two sightings of no view from one that is handed in twice.
+type Moment = (DateTime, [u64; 3], ClassLabel);
 
 /// What happened to a map since it was last asked.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -170,10 +175,14 @@ impl SemanticMap {
             parameters,
             grid: Grid::default(),
             confirmed: BTreeMap::new(),
+            viewless: BTreeMap::new(),
             changed: BTreeSet::new(),
             history: Vec::new(),
         };
         for entry in entries.into_values() {
+            for sighting in entry.sightings.values() {
+                map.note(entry.id, sighting);
+            }
             map.enter(entry);
         }
         map.changed.clear();
@@ -183,15 +192,6 @@ impl SemanticMap {
     /// What happened since this was last called, for a store that follows the map.
     pub fn news(&mut self) -> News {
         News { history: std::mem::take(&mut self.history), changed: std::mem::take(&mut self.changed) }
-    }
-
-    /// Enters a thing that is known without having been detected, under an id of the caller's. It counts as one
-    /// sighting. Ids up to this one are given to nothing else.
-    pub fn record(&mut self, id: EntryId, seen: Seen) {
-        let number = self.next_sighting();
-        let recorded = Some(seen.sighting.class.clone());
-        self.state.entries_so_far = self.state.entries_so_far.max(id.0 + 1);
-        self.enter(Entry { recorded, ..Entry::new(id, number, seen) });
     }
 
     /// What there is to remember.
@@ -205,7 +205,8 @@ impl SemanticMap {
     }
 
     /// Takes in a view. Detections that are refused do not keep the others out; they change nothing, nor does a
-    /// detection that the map has from this view already (the same class at the same place).
+    /// detection that the map has from this view already (the same class at the same place), or, where it is of no view,
+    /// from the same moment.
     pub fn observe(&mut self, view: &View) -> Observed {
         let known = view.id.as_ref().and_then(|id| self.state.views.get(id)).cloned();
         let mut outcomes: Vec<Option<Outcome>> = vec![None; view.detections.len()];
@@ -252,6 +253,9 @@ impl SemanticMap {
 
     /// The entry that has this sighting from its view already.
     fn holder(&self, sighting: &Sighting, known: Option<&BTreeSet<EntryId>>) -> Option<EntryId> {
+        if sighting.view.is_none() {
+            return self.viewless.get(&moment(sighting)).copied();
+        }
         let has = |id: &&EntryId| {
             self.state.entries.get(id).is_some_and(|entry| {
                 entry.sightings.values().any(|other| other.view == sighting.view && sighting.repeats(other))
@@ -262,6 +266,7 @@ impl SemanticMap {
 
     fn take_in(&mut self, seen: Seen, joined: Option<(EntryId, f64)>, news: &mut moves::News) -> Outcome {
         let number = self.next_sighting();
+        let sighting = seen.sighting.clone();
         let withdrawn = joined.and_then(|(id, divergence)| Some((self.withdraw(id)?, divergence)));
         let divergence = withdrawn.as_ref().map(|(_, divergence)| *divergence);
         let (entry, is_reclassified) = match withdrawn {
@@ -275,6 +280,7 @@ impl SemanticMap {
             None => (Entry::new(self.next_entry(), number, seen), false),
         };
         let id = entry.id;
+        self.note(id, &sighting);
         news.seen.insert(id);
         if entry.views() == self.parameters.confirming_views || is_reclassified {
             news.confirmed.insert(id);
@@ -283,6 +289,13 @@ impl SemanticMap {
         match divergence {
             None => Outcome::New { entry: id, sighting: number },
             Some(divergence) => Outcome::Joined { entry: id, divergence, sighting: number },
+        }
+    }
+
+    /// Notes which entry holds a sighting that is of no view.
+    fn note(&mut self, id: EntryId, sighting: &Sighting) {
+        if sighting.view.is_none() {
+            self.viewless.insert(moment(sighting), id);
         }
     }
 
@@ -322,6 +335,11 @@ impl SemanticMap {
         }
         Some(entry)
     }
+}
+
+fn moment(sighting: &Sighting) -> Moment {
+    // Adding zero makes −0.0 the 0.0 that it equals.
+    (sighting.at, sighting.position.metres().map(|metres| (metres + 0.0).to_bits()), sighting.class.clone())
 }
 
 #[cfg(test)]

@@ -200,8 +200,9 @@ impl SemanticMap {
 
     /// Notes that these sightings are in another entry.
     pub(super) fn rename(&mut self, from: EntryId, to: EntryId, sightings: &BTreeMap<SightingId, Sighting>) {
-        for view in sightings.values().filter_map(|sighting| sighting.view.as_ref()) {
-            if let Some(entries) = self.state.views.get_mut(view) {
+        for sighting in sightings.values() {
+            self.note(to, sighting);
+            if let Some(entries) = sighting.view.as_ref().and_then(|view| self.state.views.get_mut(view)) {
                 entries.remove(&from);
                 entries.insert(to);
             }

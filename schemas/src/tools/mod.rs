@@ -9,6 +9,7 @@ mod finding;
 mod judging;
 mod listing;
 mod looking;
+mod observing;
 mod recording;
 
 use schemars::JsonSchema;
@@ -29,6 +30,10 @@ pub use listing::{
 pub use looking::{
     GetUsageSummary, LookAlike, NearbyObjects, NearbyObjectsResult, Neighbour, SimilarObjects,
     SimilarObjectsResult, UsageSummary, UserUsage,
+};
+pub use observing::{
+    MovedObject, Observation, ObserveObjects, ObserveObjectsResult, PerhapsMoved, RejectedObservation, SeenObject,
+    SeenView,
 };
 pub use recording::{
     RecordAnswer, RecordAnswerResult, RecordScores, RecordScoresResult, RecordUsage, RecordUsageResult,
@@ -57,6 +62,8 @@ pub const DEFAULT_GAMMA: f64 = 1.0;
 pub const DEFAULT_MIN_WEIGHT: f64 = 0.01;
 /// Most captions in one `record_usage` call.
 pub const MAX_CAPTIONS: usize = 100_000;
+/// Most observations in one `observe_objects` call.
+pub const MAX_OBSERVATIONS: usize = 10_000;
 /// Longest caption, question or answer, in bytes.
 pub const MAX_TEXT_BYTES: usize = 2_000;
 /// Default of `limit` in `list_objects`.

@@ -4,7 +4,9 @@ mod doctor;
 mod import;
 mod install;
 mod map;
+mod observe;
 mod serve;
+mod split;
 mod uninstall;
 
 use std::io::{ErrorKind, Write};
@@ -24,6 +26,7 @@ Examples:
   coin-server --db home.db --http 127.0.0.1:8750 # serve many clients on this computer
   coin-server --db home.db --http 0.0.0.0:8750 --token-file token.txt    # and for other computers
   coin-server install claude-desktop             # or claude-code, cursor, vscode
+  coin-server observe --file detections.jsonl --db home.db    # what a robot saw becomes things
   coin-server map --db home.db --html home.html  # the plan of the home: whose is what, and how sure
   coin-server doctor                             # what is wrong, if anything
 
@@ -48,6 +51,10 @@ enum Command {
     Install(install::Install),
     /// Take the server out of the configuration of such a program
     Uninstall(uninstall::Uninstall),
+    /// Put recorded detections on the map: each joins the thing that it is a sighting of, or becomes a new one
+    Observe(observe::Observe),
+    /// Undo a wrong join: take sightings out of a thing and make another thing of them
+    Split(split::Split),
     /// Draw the plan of the home, or list it: rooms, things, whose they are and how sure that is; nothing is changed
     Map(map::Map),
     /// Say what is wrong with the database, its permissions and the programs that use it; nothing is changed
@@ -95,6 +102,8 @@ pub fn run() -> ExitCode {
         Some(Command::Import(import)) => import::run(import).map(|()| Exit::Done),
         Some(Command::Install(install)) => install::run(install).map(|()| Exit::Done),
         Some(Command::Uninstall(uninstall)) => uninstall::run(uninstall).map(|()| Exit::Done),
+        Some(Command::Observe(observe)) => observe::run(observe).map(|()| Exit::Done),
+        Some(Command::Split(split)) => split::run(split).map(|()| Exit::Done),
         Some(Command::Map(map)) => map::run(map).map(|()| Exit::Done),
         Some(Command::Doctor(doctor)) => doctor::run(doctor),
         None => serve::run(&arguments.serve).map(|()| Exit::Done),

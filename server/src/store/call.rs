@@ -113,7 +113,7 @@ impl Call {
     }
 
     /// Between two statements an interruption reaches nobody in SQLite, so that it is asked for here.
-    pub(super) fn go_on(&self) -> Result<(), StoreError> {
+    pub(crate) fn go_on(&self) -> Result<(), StoreError> {
         match *self.state() {
             State::Interrupted => Err(StoreError::Interrupted),
             State::Outside | State::Inside(_) => Ok(()),

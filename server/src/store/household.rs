@@ -115,7 +115,10 @@ impl Writer<'_> {
     /// Failures of the database.
     pub fn put_recording(&self, name: &str, now: DateTime) -> Result<(), StoreError> {
         self.connection
-            .prepare_cached("UPDATE home SET recording = ?1, clock = max(coalesce(clock, ?2), ?2)")?
+            .prepare_cached(
+                "UPDATE home SET recording = ?1, recorded_at = coalesce(recorded_at, ?2),
+                     clock = max(coalesce(clock, ?2), ?2)",
+            )?
             .execute((name, civil_seconds(now)))?;
         Ok(())
     }

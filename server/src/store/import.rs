@@ -7,7 +7,8 @@ use coin::captions::{CaptionReader, Observation};
 use coin::roster::Roster;
 use coin_schemas::episode::{CaptionLine, EpisodeObject};
 
-use super::map::{ObjectKey, StoredObject};
+use super::map::ObjectKey;
+use super::sightings::Recorded;
 use super::usage::{UsageCounts, UsageRecord};
 use super::{Store, StoreError, Writer};
 use crate::episode::{Feature, LoadedEpisode};
@@ -100,23 +101,24 @@ impl Writer<'_> {
         }
         let mut keys = HashMap::new();
         for (place, object) in episode.objects.iter().enumerate() {
-            let stored = self
-                .object(object.id.as_str())?
+            let key = self
+                .object_key(object.id.as_str())?
                 .ok_or_else(|| other(format!("it has no object {:?}", object.id.as_str())))?;
-            if !is_same(&stored, object) {
+            let recorded = self.as_recorded(key)?;
+            if !is_same(&recorded, object) {
                 return Err(other(format!(
                     "object {:?} is a {} at {:?} there and a {} at {:?} in the episode",
                     object.id.as_str(),
-                    stored.class,
-                    stored.position.metres(),
+                    recorded.class,
+                    recorded.position.metres(),
                     object.class,
                     object.position.metres(),
                 )));
             }
-            if self.feature(stored.key)?.as_deref() != visible(loaded, place).map(<[f32; _]>::as_slice) {
+            if recorded.feature.as_deref() != visible(loaded, place).map(<[f32; _]>::as_slice) {
                 return Err(other(format!("object {:?} has another embedding", object.id.as_str())));
             }
-            keys.insert(object.id.as_str(), stored.key);
+            keys.insert(object.id.as_str(), key);
         }
         Ok(keys)
     }
@@ -139,8 +141,10 @@ fn observed_by<'a>(roster: &Roster, loaded: &'a LoadedEpisode) -> Result<Cow<'a,
     loaded.captions.iter().map(read).collect::<Result<Vec<_>, StoreError>>().map(Cow::Owned)
 }
 
-fn is_same(stored: &StoredObject, object: &EpisodeObject) -> bool {
-    stored.class == object.class && stored.position == object.position && stored.room == object.room
+fn is_same(recorded: &Recorded, object: &EpisodeObject) -> bool {
+    // The room of a thing that was seen elsewhere since is another one.
+    let in_same_room = recorded.room.as_ref().is_none_or(|room| *room == object.room);
+    recorded.class == object.class && recorded.position == object.position && in_same_room
 }
 
 fn other(difference: String) -> StoreError {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use coin_schemas::episode::{EpisodeObject, FEATURE_DIMENSIONS};
+use coin_schemas::episode::EpisodeObject;
 use coin_schemas::household::{ClassLabel, ObjectId, Position};
 use rusqlite::{OptionalExtension, Row};
 
@@ -40,7 +40,7 @@ impl StoredObject {
 }
 
 impl Reader<'_> {
-    /// The thing of this id.
+    /// The thing of this id, or that had this id before it was found to be another thing that was known already.
     ///
     /// # Errors
     /// Failures of the database.
@@ -49,15 +49,27 @@ impl Reader<'_> {
             .connection
             .prepare_cached("SELECT object_key, id, class, x, y, z, room FROM objects WHERE id = ?1")?;
         let mut rows = statement.query([id])?;
-        rows.next()?.map(StoredObject::from_row).transpose()
+        match rows.next()? {
+            Some(row) => StoredObject::from_row(row).map(Some),
+            None => self.formerly(id)?.map(|key| self.stored(key)).transpose(),
+        }
     }
 
-    /// The key of the thing of this id.
+    /// The key of the thing of this id, or that had this id.
     ///
     /// # Errors
     /// Failures of the database.
     pub fn object_key(&self, id: &str) -> Result<Option<ObjectKey>, StoreError> {
         let mut statement = self.connection.prepare_cached("SELECT object_key FROM objects WHERE id = ?1")?;
+        match statement.query_row([id], |row| row.get(0)).optional()? {
+            Some(key) => Ok(Some(ObjectKey(key))),
+            None => self.formerly(id),
+        }
+    }
+
+    fn formerly(&self, id: &str) -> Result<Option<ObjectKey>, StoreError> {
+        let mut statement =
+            self.connection.prepare_cached("SELECT object_key FROM former_ids WHERE id = ?1")?;
         Ok(statement.query_row([id], |row| row.get(0)).optional()?.map(ObjectKey))
     }
 
@@ -129,24 +141,27 @@ impl Writer<'_> {
         Ok(ObjectKey(self.connection.last_insert_rowid()))
     }
 
-    /// Stores what a thing looks like.
+    /// Stores what a thing looks like: 512 numbers, which the schema of the database holds to.
     ///
     /// # Errors
     /// Failures of the database.
     pub fn put_feature(
         &self,
         object: ObjectKey,
-        feature: &[f32; FEATURE_DIMENSIONS],
+        feature: &[f32],
     ) -> Result<(), StoreError> {
-        let bytes: Vec<u8> = feature.iter().flat_map(|component| component.to_le_bytes()).collect();
         self.connection
             .prepare_cached(
                 "INSERT INTO features (object_key, vector) VALUES (?1, ?2)
                  ON CONFLICT (object_key) DO UPDATE SET vector = excluded.vector",
             )?
-            .execute((object.0, bytes))?;
+            .execute((object.0, to_bytes(feature)))?;
         Ok(())
     }
+}
+
+pub(super) fn to_bytes(feature: &[f32]) -> Vec<u8> {
+    feature.iter().flat_map(|component| component.to_le_bytes()).collect()
 }
 
 pub(super) fn from_bytes(bytes: &[u8]) -> Vec<f32> {

@@ -21,10 +21,14 @@ mod inspection;
 mod lists;
 mod looks;
 mod map;
+mod merging;
 mod migrations;
 mod newcomers;
+mod observing;
 mod open;
 mod places;
+mod semantic_map;
+mod sightings;
 #[cfg(test)]
 mod tests;
 mod usage;
@@ -46,11 +50,16 @@ pub use indexing::LookIndexing;
 pub use inspection::Inspection;
 pub(crate) use looks::Alike;
 pub use map::{ObjectKey, StoredObject};
+pub use observing::{
+    MovedObject, Observations, Observed, PerhapsMovedObject, SplitFailure, ViewInRooms,
+};
+pub use sightings::{ChangeKind, FormerPlace, ObjectChange};
 pub(crate) use usage::EVENTS_BETWEEN_REPORTS;
 pub use usage::{UsageCounts, UsageLog, UsageRecord};
 
 use connections::Connections;
 use looks::KeptLooks;
+use semantic_map::KeptMap;
 
 /// What may be done with a store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -68,6 +77,7 @@ pub enum Access {
 pub struct Store {
     connections: Arc<Connections>,
     looks: Arc<KeptLooks>,
+    map: Arc<KeptMap>,
     access: Access,
     call: Call,
 }
@@ -79,7 +89,7 @@ impl Store {
     /// [`StoreError::Open`], which names the file and the reason.
     pub fn open(path: &Path, access: Access) -> Result<Self, StoreError> {
         let connections = Connections::to_file(path, access).map_err(|source| source.opening(path))?;
-        Ok(Self { connections: Arc::new(connections), looks: Arc::default(), access, call: Call::default() })
+        Ok(Self::on(connections, access))
     }
 
     /// Opens a store that is gone when it is dropped.
@@ -87,8 +97,17 @@ impl Store {
     /// # Errors
     /// If there is no memory left.
     pub fn open_in_memory() -> Result<Self, StoreError> {
-        let connections = Arc::new(Connections::to_memory()?);
-        Ok(Self { connections, looks: Arc::default(), access: Access::ReadWrite, call: Call::default() })
+        Ok(Self::on(Connections::to_memory()?, Access::ReadWrite))
+    }
+
+    fn on(connections: Connections, access: Access) -> Self {
+        Self {
+            connections: Arc::new(connections),
+            looks: Arc::default(),
+            map: Arc::default(),
+            access,
+            call: Call::default(),
+        }
     }
 
     /// What the store was opened for.

@@ -6,6 +6,7 @@
 
 use rmcp::model::JsonObject;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use serde_json::{Number, Value};
 use serde_path_to_error::{Path, Segment};
 
@@ -25,6 +26,24 @@ pub(super) fn parse<T: Tool>(schema: &JsonObject, arguments: JsonObject) -> Resu
         tool: T::NAME,
         problem: explain(&schema, &value, source.path(), source.inner()),
         example: T::EXAMPLE,
+    })
+}
+
+/// Reads one item of a list whose items are read one by one.
+pub(crate) fn item<T: DeserializeOwned>(schema: &JsonObject, item: &Value) -> Result<T, String> {
+    if let Ok(item) = T::deserialize(item) {
+        return Ok(item);
+    }
+    let mut value = match item {
+        Value::Object(members) => Value::Object(left_out_removed(schema, members.clone())),
+        other => other.clone(),
+    };
+    let schema = Value::Object(schema.clone());
+    convert(&mut value, &schema);
+    serde_path_to_error::deserialize(&value).map_err(|source| {
+        let problem = explain(&schema, &value, source.path(), source.inner());
+        // Something that is no object has no field to name.
+        problem.strip_prefix(": ").map(str::to_owned).unwrap_or(problem)
     })
 }
 

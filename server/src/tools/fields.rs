@@ -110,7 +110,7 @@ pub(super) fn time(field: &str, given: Option<&str>) -> Result<Option<DateTime>,
 }
 
 /// A wrong value as a message repeats it: quoted, and not longer than a line.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED_CHARACTERS) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
         None => format!("{text:?}"),

@@ -16,6 +16,7 @@ mod list_objects;
 mod list_users;
 mod nearby_objects;
 mod next_question;
+mod observe_objects;
 mod record_answer;
 mod record_scores;
 mod record_usage;
@@ -33,11 +34,14 @@ use serde::de::DeserializeOwned;
 
 use crate::store::Store;
 
+pub(crate) use arguments::item as read_item;
 pub(crate) use ask_owner::FORM_LIFETIME;
 pub(crate) use conversation::{Form, FormState, Person, Reply, Turn};
 pub(crate) use error::ToolError;
+pub(crate) use fields::quoted;
 pub(crate) use registry::{Entry, Registry};
 pub use registry::{ToolSelection, UnknownTool};
+pub(crate) use schema::of_arguments as argument_schema;
 
 /// What a tool does to the home. None destroys anything, and none reaches outside the home.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

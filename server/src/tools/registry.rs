@@ -16,6 +16,7 @@ use super::list_objects::ListObjectsTool;
 use super::list_users::ListUsersTool;
 use super::nearby_objects::NearbyObjectsTool;
 use super::next_question::NextQuestionTool;
+use super::observe_objects::ObserveObjectsTool;
 use super::record_answer::RecordAnswerTool;
 use super::record_scores::RecordScoresTool;
 use super::record_usage::RecordUsageTool;
@@ -158,6 +159,7 @@ impl Registry {
         add(ListUsersTool::NAME, Entry::new::<ListUsersTool>());
         add(NearbyObjectsTool::NAME, Entry::new::<NearbyObjectsTool>());
         add(NextQuestionTool::NAME, Entry::new::<NextQuestionTool>());
+        add(ObserveObjectsTool::NAME, Entry::new::<ObserveObjectsTool>());
         add(RecordAnswerTool::NAME, Entry::new::<RecordAnswerTool>());
         add(RecordScoresTool::NAME, Entry::new::<RecordScoresTool>());
         add(RecordUsageTool::NAME, Entry::new::<RecordUsageTool>());

@@ -8,7 +8,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde_json::Value;
 
 /// The schema of arguments: what is accepted.
-pub(super) fn of_arguments<T: JsonSchema>() -> JsonObject {
+pub(crate) fn of_arguments<T: JsonSchema>() -> JsonObject {
     object_schema::<T>(SchemaSettings::draft2020_12().for_deserialize())
 }
 

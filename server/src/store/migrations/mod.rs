@@ -13,6 +13,7 @@ const STEPS: &[M<'_>] = &[
     M::up(include_str!("01-household.sql")),
     M::up(include_str!("02-retractions.sql")),
     M::up(include_str!("03-conversations.sql")),
+    M::up(include_str!("04-sightings.sql")),
     M::up(include_str!("05-indexes.sql")),
 ];
 
