@@ -86,9 +86,11 @@ impl Batch {
     /// What is wrong with it, with the field.
     pub(crate) fn add_view(&mut self, seen: &SeenView) -> Result<(), String> {
         let name = name("view", &seen.view)?;
-        let corner =
-            |field: &str, metres: [f64; 3]| Position::new(metres).map_err(|source| format!("{field}: {source}"));
-        let region = Region { least: corner("least", seen.least)?, greatest: corner("greatest", seen.greatest)? };
+        let corner = |field: &str, metres: [f64; 3]| {
+            Position::new(metres).map_err(|source| format!("{field}: {source}"))
+        };
+        let region =
+            Region { least: corner("least", seen.least)?, greatest: corner("greatest", seen.greatest)? };
         if (0..3).any(|axis| seen.least[axis] > seen.greatest[axis]) {
             return Err(format!("least: {:?} is beyond greatest, {:?}", seen.least, seen.greatest));
         }
@@ -97,7 +99,10 @@ impl Batch {
             (Some(place), _) => *place,
             (None, Some(at)) => self.view_of(Some(name.to_owned()), at),
             (None, None) => {
-                return Err(format!("seen_at: it is missing, and no observation is of the view {}", quoted(name)));
+                return Err(format!(
+                    "seen_at: it is missing, and no observation is of the view {}",
+                    quoted(name)
+                ));
             }
         };
         let view = &mut self.views[place].view.view;

@@ -32,8 +32,8 @@ pub use looking::{
     SimilarObjectsResult, UsageSummary, UserUsage,
 };
 pub use observing::{
-    MovedObject, Observation, ObserveObjects, ObserveObjectsResult, PerhapsMoved, RejectedObservation, SeenObject,
-    SeenView,
+    MovedObject, Observation, ObserveObjects, ObserveObjectsResult, PerhapsMoved, RejectedObservation,
+    SeenObject, SeenView,
 };
 pub use recording::{
     RecordAnswer, RecordAnswerResult, RecordScores, RecordScoresResult, RecordUsage, RecordUsageResult,

@@ -17,7 +17,7 @@ use crate::observations::Batch;
 use crate::store::Access;
 
 /// So many detections are stored together at least, where there are as many; the views that they are of are kept whole.
-const BATCH: usize = 2_000;
+const BATCH: usize = 8_000;
 
 /// So many refused lines are told one by one.
 const TOLD_LINES: u64 = 20;
@@ -116,7 +116,10 @@ impl Totals {
 impl std::fmt::Display for Totals {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { stored, new, moved, rejected } = self;
-        write!(formatter, "Detections {stored} stored and {rejected} left out; things {new} new and {moved} moved.")
+        write!(
+            formatter,
+            "Detections {stored} stored and {rejected} left out; things {new} new and {moved} moved."
+        )
     }
 }
 

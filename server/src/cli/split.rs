@@ -127,7 +127,8 @@ fn listed(object: &StoredObject, sightings: &[(SightingId, Sighting)]) -> String
         );
     }
     let omitted = sightings.len().saturating_sub(LISTED as usize);
-    let mut text = format!("{:>9}  {:<23}  {:>24}  {:<16}  view\n", "sighting", "seen at", "position, m", "class");
+    let mut text =
+        format!("{:>9}  {:<23}  {:>24}  {:<16}  view\n", "sighting", "seen at", "position, m", "class");
     for (number, Sighting { class, position, at, view, .. }) in &sightings[omitted..] {
         let [x, y, z] = position.metres();
         let view = view.as_ref().map_or("–".into(), |view| plain_text(&view.0));

@@ -145,11 +145,7 @@ impl Writer<'_> {
     ///
     /// # Errors
     /// Failures of the database.
-    pub fn put_feature(
-        &self,
-        object: ObjectKey,
-        feature: &[f32],
-    ) -> Result<(), StoreError> {
+    pub fn put_feature(&self, object: ObjectKey, feature: &[f32]) -> Result<(), StoreError> {
         self.connection
             .prepare_cached(
                 "INSERT INTO features (object_key, vector) VALUES (?1, ?2)

@@ -27,7 +27,8 @@ impl Writer<'_> {
         ] {
             self.connection.prepare_cached(statement)?.execute(keys)?;
         }
-        for table in ["usage_events", "inferences", "map_entries", "map_moves", "told_apart", "features", "objects"]
+        for table in
+            ["usage_events", "inferences", "map_entries", "map_moves", "told_apart", "features", "objects"]
         {
             self.connection
                 .prepare_cached(&format!("DELETE FROM {table} WHERE object_key = ?1"))?
@@ -47,9 +48,13 @@ impl Writer<'_> {
             .connection
             .prepare_cached("SELECT coalesce(max(sequence), 0) FROM answers WHERE object_key = ?1")?
             .query_row([whole.0], |row| row.get(0))?;
-        self.connection.prepare_cached("DELETE FROM present_answers WHERE object_key = ?1")?.execute([part.0])?;
         self.connection
-            .prepare_cached("UPDATE answers SET object_key = ?2, sequence = sequence + ?3 WHERE object_key = ?1")?
+            .prepare_cached("DELETE FROM present_answers WHERE object_key = ?1")?
+            .execute([part.0])?;
+        self.connection
+            .prepare_cached(
+                "UPDATE answers SET object_key = ?2, sequence = sequence + ?3 WHERE object_key = ?1",
+            )?
             .execute((part.0, whole.0, before))?;
         if let Some((sequence, at)) = given
             && believed.is_none_or(|(_, believed_at)| at > believed_at)

@@ -50,9 +50,7 @@ pub use indexing::LookIndexing;
 pub use inspection::Inspection;
 pub(crate) use looks::Alike;
 pub use map::{ObjectKey, StoredObject};
-pub use observing::{
-    MovedObject, Observations, Observed, PerhapsMovedObject, SplitFailure, ViewInRooms,
-};
+pub use observing::{MovedObject, Observations, Observed, PerhapsMovedObject, SplitFailure, ViewInRooms};
 pub use sightings::{ChangeKind, FormerPlace, ObjectChange};
 pub(crate) use usage::EVENTS_BETWEEN_REPORTS;
 pub use usage::{UsageCounts, UsageLog, UsageRecord};

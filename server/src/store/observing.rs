@@ -11,8 +11,8 @@ use jiff::civil::DateTime;
 use rusqlite::OptionalExtension;
 use thiserror::Error;
 
-use super::semantic_map::{Revised, entry_id, milliseconds, object_key};
 use super::map::to_bytes;
+use super::semantic_map::{Revised, entry_id, milliseconds, object_key};
 use super::{ObjectKey, Store, StoreError, Writer};
 
 /// A view with the names of the rooms that its detections are in, where they are known.
@@ -186,9 +186,8 @@ impl Writer<'_> {
             ids.insert(entry, id.clone());
             Ok(id)
         };
-        let views = |entry: EntryId| {
-            map.state().entries.get(&kept.final_entry(entry)).map_or(0, Entry::views)
-        };
+        let views =
+            |entry: EntryId| map.state().entries.get(&kept.final_entry(entry)).map_or(0, Entry::views);
         let mut detections = Vec::with_capacity(outcomes.len());
         for outcomes in outcomes {
             let of_view = outcomes.into_iter().map(|outcome| {
@@ -270,7 +269,9 @@ impl Writer<'_> {
         let is_new = moved == 0;
         if is_new {
             self.connection
-                .prepare_cached("INSERT INTO objects (object_key, id, class, x, y, z) VALUES (?1, ?2, ?3, ?4, ?5, ?6)")?
+                .prepare_cached(
+                    "INSERT INTO objects (object_key, id, class, x, y, z) VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+                )?
                 .execute((key.0, self.free_id(key)?, class, x, y, z))?;
         } else {
             self.keep_recorded_feature(key)?;
@@ -278,7 +279,9 @@ impl Writer<'_> {
         match entry.look.as_ref().and_then(Look::feature) {
             Some(feature) => self.put_feature(key, &feature)?,
             None => {
-                self.connection.prepare_cached("DELETE FROM features WHERE object_key = ?1")?.execute([key.0])?;
+                self.connection
+                    .prepare_cached("DELETE FROM features WHERE object_key = ?1")?
+                    .execute([key.0])?;
             }
         }
         let look: Option<Vec<u8>> = entry
@@ -357,7 +360,15 @@ impl Writer<'_> {
             .optional()?;
         // A thing that was made and recognised by the same views never had an id.
         let Some(id) = id else { return Ok(()) };
-        if kind != "split" {
+        if let Change::Split { sightings, .. } = change {
+            for number in sightings {
+                self.connection
+                    .prepare_cached(
+                        "UPDATE sightings SET object_key = ?2 WHERE object_key = ?1 AND sighting = ?3",
+                    )?
+                    .execute((key.0, other_key.0, number.0 as i64))?;
+            }
+        } else {
             if kind == "moved" {
                 self.connection
                     .prepare_cached(

@@ -83,8 +83,7 @@ impl Writer<'_> {
     }
 
     fn read_map(&self) -> Result<SemanticMap, StoreError> {
-        let mut statement =
-            self.connection.prepare_cached("SELECT next_object, next_sighting FROM home")?;
+        let mut statement = self.connection.prepare_cached("SELECT next_object, next_sighting FROM home")?;
         let (next_object, next_sighting): (i64, i64) =
             statement.query_row([], |row| Ok((row.get(0)?, row.get(1)?)))?;
         let mut state = MapState {
@@ -207,8 +206,7 @@ impl Writer<'_> {
     }
 
     fn read_told_apart(&self, state: &mut MapState) -> Result<(), StoreError> {
-        let mut statement =
-            self.connection.prepare_cached("SELECT object_key, other_key FROM told_apart")?;
+        let mut statement = self.connection.prepare_cached("SELECT object_key, other_key FROM told_apart")?;
         let mut rows = statement.query([])?;
         while let Some(row) = rows.next()? {
             if let Some(entry) = state.entries.get_mut(&entry_id(ObjectKey(row.get(0)?))) {
@@ -285,6 +283,8 @@ pub(super) fn milliseconds(at: DateTime) -> i64 {
 /// The local time that a column of milliseconds holds.
 pub(super) fn moment(milliseconds: i64) -> Result<DateTime, StoreError> {
     from_civil_seconds(milliseconds.div_euclid(1000))
-        .and_then(|second| second.checked_add(SignedDuration::from_millis(milliseconds.rem_euclid(1000))).ok())
+        .and_then(|second| {
+            second.checked_add(SignedDuration::from_millis(milliseconds.rem_euclid(1000))).ok()
+        })
         .ok_or_else(|| StoreError::damaged(format!("{milliseconds} is no local time")))
 }

@@ -152,9 +152,9 @@ impl Reader<'_> {
     /// # Errors
     /// Failures of the database.
     pub fn last_detected(&self, key: ObjectKey) -> Result<Option<DateTime>, StoreError> {
-        let mut statement = self.connection.prepare_cached(
-            "SELECT max(at) FROM sightings WHERE object_key = ?1 AND NOT recorded",
-        )?;
+        let mut statement = self
+            .connection
+            .prepare_cached("SELECT max(at) FROM sightings WHERE object_key = ?1 AND NOT recorded")?;
         let at: Option<i64> = statement.query_row([key.0], |row| row.get(0)).optional()?.flatten();
         at.map(moment).transpose()
     }

@@ -1,4 +1,5 @@
 mod indexes;
+mod observing;
 mod together;
 
 use std::path::Path;
@@ -82,7 +83,7 @@ fn a_database_of_a_newer_version_is_refused() {
     let path = folder.path().join("home.db");
     drop(Store::open(&path, Access::ReadWrite).unwrap());
     Connection::open(&path).unwrap().execute_batch("PRAGMA user_version = 99").unwrap();
-    insta::assert_snapshot!(opening_fails(&path, Access::ReadWrite), @"cannot open the database FILE: it has version 99 and this program knows versions up to 4; install a newer coin-server");
+    insta::assert_snapshot!(opening_fails(&path, Access::ReadWrite), @"cannot open the database FILE: it has version 99 and this program knows versions up to 5; install a newer coin-server");
 }
 
 #[test]
@@ -98,7 +99,7 @@ fn an_older_database_is_not_migrated_for_reading() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("home.db");
     std::fs::write(&path, "").unwrap();
-    insta::assert_snapshot!(opening_fails(&path, Access::ReadOnly), @"cannot open the database FILE: it has version 0 and must be brought to version 4; open it once without --read-only");
+    insta::assert_snapshot!(opening_fails(&path, Access::ReadOnly), @"cannot open the database FILE: it has version 0 and must be brought to version 5; open it once without --read-only");
 }
 
 #[test]
