@@ -29,7 +29,7 @@ pub(crate) fn survey(store: &Store) -> Result<HomeMap, StoreError> {
                 id: object.id.clone(),
                 class: object.class.clone(),
                 room: object.room.clone(),
-                position: object.position,
+                position: object.shown_position(),
                 owners: roster.owners(judgement.reading.owners),
                 owner_outside_household: judgement.reading.outside_household,
                 confidence: judgement.confidence,

@@ -28,6 +28,13 @@ pub struct StoredObject {
 }
 
 impl StoredObject {
+    /// Where it is, in metres, to the micrometre: what is made from many sightings has more digits than anybody can use.
+    pub fn shown_position(&self) -> Position {
+        let rounded = self.position.metres().map(|metres| (metres * 1e6).round() / 1e6 + 0.0);
+        // What is so far away that it cannot be rounded is shown as it is.
+        Position::new(rounded).unwrap_or(self.position)
+    }
+
     fn from_row(row: &Row<'_>) -> Result<Self, StoreError> {
         Ok(Self {
             key: ObjectKey(row.get(0)?),

@@ -122,7 +122,11 @@ pub(super) fn object_ref(object: &StoredObject) -> ObjectRef {
 }
 
 pub(super) fn placed_object_ref(object: &StoredObject) -> PlacedObjectRef {
-    PlacedObjectRef { id: object.id.clone(), name: display_name(&object.class), position: object.position }
+    PlacedObjectRef {
+        id: object.id.clone(),
+        name: display_name(&object.class),
+        position: object.shown_position(),
+    }
 }
 
 /// A day from now by the wall clock; no camera has seen anything later.

@@ -85,7 +85,7 @@ impl Tool for FindObjectTool {
                 Some(ObjectMatch {
                     id: object.id.clone(),
                     name: display_name(&object.class),
-                    position: object.position,
+                    position: object.shown_position(),
                     matched: four_decimals(one.matched),
                     ownership: one.ownership.map(four_decimals),
                     score: four_decimals(one.score),
@@ -124,7 +124,7 @@ fn found_object(scene: &Scene<'_>, object: &StoredObject, judgement: &Judgement)
     FoundObject {
         id: object.id.clone(),
         name: display_name(&object.class),
-        position: object.position,
+        position: object.shown_position(),
         room: object.room.clone(),
         owners: scene.household().roster().owners(judgement.reading.owners),
         confidence: judgement.confidence,

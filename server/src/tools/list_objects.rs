@@ -89,7 +89,7 @@ fn listed(object: &StoredObject, belief: Option<&Belief>) -> ListedObject {
     ListedObject {
         id: object.id.clone(),
         name: display_name(&object.class),
-        position: object.position,
+        position: object.shown_position(),
         room: object.room.clone(),
         owners: belief.map(Belief::owners).cloned().unwrap_or_default(),
         confidence: belief.map_or(0.0, Belief::confidence),

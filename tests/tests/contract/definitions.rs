@@ -5,7 +5,7 @@ use rstest::rstest;
 use serde_json::{Value, json};
 
 /// The tools of this version and whether they only look.
-const TOOLS: [(&str, bool); 14] = [
+const TOOLS: [(&str, bool); 15] = [
     ("add_user", false),
     ("ask_owner", false),
     ("find_object", true),
@@ -14,6 +14,7 @@ const TOOLS: [(&str, bool); 14] = [
     ("list_users", true),
     ("nearby_objects", true),
     ("next_question", true),
+    ("observe_objects", false),
     ("record_answer", false),
     ("record_scores", false),
     ("record_usage", false),

@@ -86,10 +86,14 @@ fn a_folder() {
 #[test]
 fn a_damaged_database_is_told_and_does_not_end_the_server() {
     let home = Home::of(&super::furnished().caption("1", "2025-01-19 08:00 Bob takes the Marker"));
+    let connection = Connection::open(home.db()).unwrap();
+    let number = |sql: &str| connection.query_row(sql, [], |row| row.get::<_, usize>(0)).unwrap();
+    let size = number("PRAGMA page_size");
+    let page = number("SELECT rootpage FROM sqlite_schema WHERE name = 'objects'");
+    drop(connection);
     let mut bytes = fs::read(home.db()).unwrap();
-    // The first page holds the schema; what follows is overwritten.
-    let page = 4_096.min(bytes.len() / 2);
-    bytes[page..].fill(0xA5);
+    // Only the things are overwritten, so that the database can be opened.
+    bytes[(page - 1) * size..page * size].fill(0xA5);
     fs::write(home.db(), bytes).unwrap();
     let mut server = home.server();
     server.refused("list_objects", serde_json::json!({}), &["damaged"]);

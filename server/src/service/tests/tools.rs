@@ -73,7 +73,7 @@ async fn the_list_of_tools_has_one_page() {
     let list = client.request("tools/list", json!({})).await["result"].take();
     let names: Vec<&str> =
         list["tools"].as_array().unwrap().iter().map(|tool| tool["name"].as_str().unwrap()).collect();
-    assert_eq!(names.len(), 16, "{names:?}");
+    assert_eq!(names.len(), 17, "{names:?}");
     assert!(names.is_sorted(), "{names:?}");
     assert_eq!(list.get("nextCursor"), None);
     let answer = client.request("tools/list", json!({"cursor": "2"})).await;

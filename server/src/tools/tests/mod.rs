@@ -3,6 +3,7 @@ mod asking;
 mod definitions;
 mod joining;
 mod judging;
+mod observing;
 mod reading;
 mod recording;
 mod retracting;
