@@ -76,7 +76,7 @@ fn wrong_use_is_explained() {
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(output.stdout, b"");
     insta::assert_snapshot!(text(&output.stderr), @r#"
-error: invalid value 'list_object' for '--tools <all|core|NAME,…>': there is no tool "list_object". Did you mean "list_objects" or "list_users" or "similar_objects"? The tools are add_user, ask_owner, find_object, get_usage_summary, list_objects, list_users, nearby_objects, next_question, record_answer, record_scores, record_usage, retract_answer, similar_objects, whose_is.
+error: invalid value 'list_object' for '--tools <all|core|NAME,…>': there is no tool "list_object". Did you mean "list_objects" or "list_users" or "similar_objects"? The tools are add_user, ask_owner, find_object, get_usage_summary, list_objects, list_users, nearby_objects, next_question, observe_objects, record_answer, record_scores, record_usage, retract_answer, similar_objects, whose_is.
 
 For more information, try '--help'.
 "#);

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use coin::map::detection::Sighting;
 use coin_schemas::household::ObjectId;
 use coin_schemas::tools::{ListObjects, ListUsers, MAX_LIMIT, ObjectRef, WhoseIs, display_name};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
@@ -25,6 +26,9 @@ const PAGE: usize = 100;
 
 /// How many captions a history shows, the latest ones.
 const CAPTIONS_SHOWN: usize = 200;
+
+/// How many sightings a history shows, the latest ones.
+const SIGHTINGS_SHOWN: u32 = 50;
 
 /// Everything but letters, digits and what RFC 3986 leaves unreserved.
 const RESERVED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
@@ -70,7 +74,9 @@ pub(super) fn templates() -> Vec<ResourceTemplate> {
             .with_mime_type(JSON),
         ResourceTemplate::new(format!("{OBJECTS}/{{object_id}}/{HISTORY}"), "object-history")
             .with_title("The history of a thing")
-            .with_description("What was seen of a thing and what people said of it, oldest first.")
+            .with_description(
+                "What was seen of a thing, where it was, and what people said of it, oldest first.",
+            )
             .with_mime_type(JSON),
     ]
 }
@@ -174,13 +180,35 @@ fn history(store: &Store, id: &str) -> Result<Value, StoreError> {
         let omitted = log.events.len().saturating_sub(CAPTIONS_SHOWN);
         let captions: Vec<&str> = (omitted..log.events.len()).map(|place| log.caption(place)).collect();
         let answers = reader.answers(scene.household(), object.key)?;
+        let sightings = reader.latest_sightings(object.key, SIGHTINGS_SHOWN)?;
+        let shown = sightings.len() as u64;
+        let changes = reader.changes(object.key)?;
+        let places = reader.former_places(object.key)?;
         Ok(json!({
             "object": ObjectRef { id: object.id, name: display_name(&object.class) },
             "captions": captions,
             "omitted_captions": omitted,
             "answers": answers.iter().map(of_answer).collect::<Vec<_>>(),
+            "sightings": sightings.iter().map(|(_, sighting)| of_sighting(sighting)).collect::<Vec<_>>(),
+            "omitted_sightings": reader.sighting_count(object.key)? - shown,
+            "former_places": places
+                .iter()
+                .map(|place| json!({"position": place.position, "until": place.until}))
+                .collect::<Vec<_>>(),
+            "changes": changes
+                .iter()
+                .map(|change| json!({"kind": change.kind.as_str(), "other": change.other, "at": change.at}))
+                .collect::<Vec<_>>(),
         }))
     })
+}
+
+fn of_sighting(sighting: &Sighting) -> Value {
+    let mut told = json!({"at": sighting.at, "class": sighting.class, "position": sighting.position});
+    if let Some(view) = &sighting.view {
+        told["view"] = json!(view.0);
+    }
+    told
 }
 
 fn of_answer(answer: &RecordedAnswer) -> Value {

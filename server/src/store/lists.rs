@@ -20,7 +20,7 @@ use super::{Reader, StoreError};
 pub(super) const CODE_BYTES: usize = 8 + 4 + FEATURE_DIMENSIONS;
 
 /// So many codes are measured at least, list by list, the nearest first.
-const CODES_A_SEARCH: usize = 4096;
+const CODES_A_SEARCH: usize = 2048;
 
 /// So many looks are measured by their features at least, and so many times as many as are asked for.
 const MEASURED: usize = 64;

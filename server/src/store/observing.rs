@@ -13,6 +13,7 @@ use thiserror::Error;
 
 use super::map::to_bytes;
 use super::semantic_map::{Revised, entry_id, milliseconds, object_key};
+use super::sightings::ChangeKind;
 use super::{ObjectKey, Store, StoreError, Writer};
 
 /// A view with the names of the rooms that its detections are in, where they are known.
@@ -202,7 +203,7 @@ impl Writer<'_> {
                     },
                     Outcome::New { entry, .. } => Observed::Taken {
                         object: id_of(entry)?,
-                        is_new: kept.is_new(entry),
+                        is_new: kept.created.contains(&entry),
                         divergence: None,
                         views: views(entry),
                     },
@@ -345,9 +346,9 @@ impl Writer<'_> {
 
     fn put_change(&self, map: &SemanticMap, kept: &Persisted, change: &Change) -> Result<(), StoreError> {
         let (kind, entry, other, at) = match change {
-            Change::Moved(moved) => ("moved", moved.entry, moved.newcomer, Some(moved.at)),
-            Change::Merged { entry, other } => ("merged", *entry, *other, None),
-            Change::Split { entry, into, .. } => ("split", *entry, *into, None),
+            Change::Moved(moved) => (ChangeKind::Moved, moved.entry, moved.newcomer, Some(moved.at)),
+            Change::Merged { entry, other } => (ChangeKind::Merged, *entry, *other, None),
+            Change::Split { entry, into, .. } => (ChangeKind::Split, *entry, *into, None),
         };
         let entry = kept.final_entry(entry);
         let key = object_key(entry);
@@ -369,7 +370,7 @@ impl Writer<'_> {
                     .execute((key.0, other_key.0, number.0 as i64))?;
             }
         } else {
-            if kind == "moved" {
+            if kind == ChangeKind::Moved {
                 self.connection
                     .prepare_cached(
                         "UPDATE objects SET room = (SELECT room FROM objects WHERE object_key = ?1) WHERE object_key = ?2",
@@ -380,7 +381,7 @@ impl Writer<'_> {
         }
         self.connection
             .prepare_cached("INSERT INTO map_changes (object_key, kind, other, at) VALUES (?1, ?2, ?3, ?4)")?
-            .execute((key.0, kind, id, at.map_or(0, milliseconds)))?;
+            .execute((key.0, kind.as_str(), id, at.map_or(0, milliseconds)))?;
         Ok(())
     }
 
@@ -467,7 +468,9 @@ impl Writer<'_> {
 #[derive(Debug, Default)]
 struct Persisted {
     history: Vec<Change>,
+    /// What entries that are no more have become parts of.
     renamed: BTreeMap<EntryId, EntryId>,
+    /// Things that were not there before.
     created: BTreeSet<EntryId>,
 }
 
@@ -478,9 +481,5 @@ impl Persisted {
             entry = *next;
         }
         entry
-    }
-
-    fn is_new(&self, entry: EntryId) -> bool {
-        self.created.contains(&self.final_entry(entry))
     }
 }

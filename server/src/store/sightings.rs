@@ -4,7 +4,6 @@ use coin::map::detection::{Sighting, ViewId};
 use coin::map::entry::SightingId;
 use coin_schemas::household::{ClassLabel, Position};
 use jiff::civil::DateTime;
-use rusqlite::OptionalExtension;
 
 use super::map::{ObjectKey, from_bytes};
 use super::semantic_map::{moment, sighting, sighting_id};
@@ -29,6 +28,24 @@ pub enum ChangeKind {
     Merged,
     /// The other thing was taken out of it.
     Split,
+}
+
+impl ChangeKind {
+    /// Its word, in the database and for people.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Moved => "moved",
+            Self::Merged => "merged",
+            Self::Split => "split",
+        }
+    }
+
+    fn of_word(word: &str) -> Result<Self, StoreError> {
+        [Self::Moved, Self::Merged, Self::Split]
+            .into_iter()
+            .find(|kind| kind.as_str() == word)
+            .ok_or_else(|| StoreError::damaged(format!("there is no change {word:?}")))
+    }
 }
 
 /// Something that was found out about a thing.
@@ -136,26 +153,9 @@ impl Reader<'_> {
         let mut rows = statement.query([key.0])?;
         let mut changes = Vec::new();
         while let Some(row) = rows.next()? {
-            let kind = match row.get::<_, String>(0)?.as_str() {
-                "moved" => ChangeKind::Moved,
-                "merged" => ChangeKind::Merged,
-                "split" => ChangeKind::Split,
-                other => return Err(StoreError::damaged(format!("there is no change {other:?}"))),
-            };
+            let kind = ChangeKind::of_word(&row.get::<_, String>(0)?)?;
             changes.push(ObjectChange { kind, other: row.get(1)?, at: moment(row.get(2)?)? });
         }
         Ok(changes)
-    }
-
-    /// When a thing was last detected; `None` where it never was.
-    ///
-    /// # Errors
-    /// Failures of the database.
-    pub fn last_detected(&self, key: ObjectKey) -> Result<Option<DateTime>, StoreError> {
-        let mut statement = self
-            .connection
-            .prepare_cached("SELECT max(at) FROM sightings WHERE object_key = ?1 AND NOT recorded")?;
-        let at: Option<i64> = statement.query_row([key.0], |row| row.get(0)).optional()?.flatten();
-        at.map(moment).transpose()
     }
 }

@@ -11,6 +11,7 @@ mod finding_expressions;
 mod judging;
 mod lists;
 mod map;
+mod observing;
 mod protocol;
 mod recording;
 mod refusals;
