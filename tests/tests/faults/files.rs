@@ -87,7 +87,7 @@ fn a_folder() {
 fn a_damaged_database_is_told_and_does_not_end_the_server() {
     let home = Home::of(&super::furnished().caption("1", "2025-01-19 08:00 Bob takes the Marker"));
     let connection = Connection::open(home.db()).unwrap();
-    let number = |sql: &str| connection.query_row(sql, [], |row| row.get::<_, usize>(0)).unwrap();
+    let number = |sql: &str| connection.query_row(sql, [], |row| row.get::<_, u32>(0)).unwrap() as usize;
     let size = number("PRAGMA page_size");
     let page = number("SELECT rootpage FROM sqlite_schema WHERE name = 'objects'");
     drop(connection);
