@@ -13,6 +13,7 @@ use rmcp::service::RequestContext;
 use thiserror::Error;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use tokio::time::{Instant, sleep_until, timeout};
+use tokio_util::sync::CancellationToken;
 
 use crate::store::{Call, Progress};
 
@@ -36,10 +37,14 @@ pub(super) enum Undone {
     Fault,
     /// There is too much of it.
     #[error(
-        "{WORK_AT_ONCE} requests are being worked on, and none has ended within {} seconds; try again later",
+        "{WORK_AT_ONCE} requests are being worked on, and the turn of this one did not come within {} seconds; try \
+         again later",
         WAIT_FOR_A_PLACE.as_secs()
     )]
     TooMuch,
+    /// Nobody waits for it any more.
+    #[error("the call was given up before its turn came; nothing was changed")]
+    GivenUp,
 }
 
 /// A call that nobody waits for any more when this is dropped.
@@ -63,22 +68,31 @@ pub(super) fn run_brief<T>(work: impl FnOnce() -> T) -> Result<T, Undone> {
 /// One of the `places` that there are for work, given to those who want one in the order in which they came.
 ///
 /// # Errors
-/// If none becomes free in time.
-async fn place(places: &Arc<Semaphore>) -> Result<OwnedSemaphorePermit, Undone> {
-    let place = timeout(WAIT_FOR_A_PLACE, Arc::clone(places).acquire_owned()).await;
-    place.map_err(|_| Undone::TooMuch)?.map_err(|_| Undone::TooMuch)
+/// If none becomes free in time, or if nobody waits for the work any more.
+async fn place(
+    places: &Arc<Semaphore>,
+    given_up: &CancellationToken,
+) -> Result<OwnedSemaphorePermit, Undone> {
+    tokio::select! {
+        biased;
+        () = given_up.cancelled() => Err(Undone::GivenUp),
+        place = timeout(WAIT_FOR_A_PLACE, Arc::clone(places).acquire_owned()) => match place {
+            Ok(Ok(place)) => Ok(place),
+            Ok(Err(_)) | Err(_) => Err(Undone::TooMuch),
+        },
+    }
 }
 
 /// Does the work of a request on a thread that may wait, in one of the `places` that there are for it.
 ///
 /// # Errors
-/// If none becomes free in time, or if the work panicked.
+/// If none becomes free in time, if nobody waits for the work any more, or if it panicked.
 pub(super) async fn run<T: Send + 'static>(
     places: &Arc<Semaphore>,
     context: &RequestContext<RoleServer>,
     work: impl FnOnce(&Call) -> T + Send + 'static,
 ) -> Result<T, Undone> {
-    let place = place(places).await?;
+    let place = place(places, &context.ct).await?;
     let (told, progress) = watch::channel(None);
     let call = match context.meta.get_progress_token() {
         Some(_) => Call::with_listener(move |progress| {
@@ -132,10 +146,10 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn a_request_waits_for_those_before_it() {
         let places = Arc::new(Semaphore::new(1));
-        let before = place(&places).await.unwrap();
+        let before = place(&places, &CancellationToken::new()).await.unwrap();
         let waiting = tokio::spawn({
             let places = Arc::clone(&places);
-            async move { place(&places).await.map(drop) }
+            async move { place(&places, &CancellationToken::new()).await.map(drop) }
         });
         tokio::time::sleep(WAIT_FOR_A_PLACE / 2).await;
         assert!(!waiting.is_finished());
@@ -147,7 +161,23 @@ mod tests {
     async fn a_request_that_has_waited_too_long_is_refused() {
         let places = Arc::new(Semaphore::new(0));
         let came = Instant::now();
-        assert_eq!(place(&places).await.map(drop), Err(Undone::TooMuch));
+        assert_eq!(place(&places, &CancellationToken::new()).await.map(drop), Err(Undone::TooMuch));
         assert_eq!(came.elapsed(), WAIT_FOR_A_PLACE);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_request_that_is_given_up_gets_no_place() {
+        let given_up = CancellationToken::new();
+        let full = Arc::new(Semaphore::new(0));
+        let waiting = tokio::spawn({
+            let (full, given_up) = (Arc::clone(&full), given_up.clone());
+            async move { place(&full, &given_up).await.map(drop) }
+        });
+        tokio::time::sleep(WAIT_FOR_A_PLACE / 2).await;
+        given_up.cancel();
+        assert_eq!(waiting.await.unwrap(), Err(Undone::GivenUp));
+        // Also where a place is free at the same moment.
+        let free = Arc::new(Semaphore::new(1));
+        assert_eq!(place(&free, &given_up).await.map(drop), Err(Undone::GivenUp));
     }
 }
