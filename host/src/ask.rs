@@ -11,6 +11,8 @@ use thiserror::Error;
 
 use crate::client::{ServerError, ToolServer};
 use crate::home::{self, HomeError};
+use crate::model::ModelError;
+use crate::model::provider::{EncoderName, ProviderSettings, RemoteEncoder};
 use coin_server::display::plain_text;
 
 const EXAMPLES: &str = "\
@@ -21,9 +23,11 @@ Examples:
       In a home that is only looked at: nothing is kept.
   host ask 'whose mug is this?' --db home.db --json
       The whole result of find_object, and it alone, on standard output.
+  OPENAI_BASE_URL=http://127.0.0.1:7997 host ask 'the striped one' --encoder openai:clip --db home.db
+      A thing by its looks: its label need not say that it is striped.
 
-Exit status: 0 the thing is found; 1 failed; 2 wrong use, a refused file or an unknown speaker; 3 no thing is found: a
-question has to come first, or nothing is handed out.";
+Exit status: 0 the thing is found; 1 failed; 2 wrong use, a refused file or an unknown speaker;
+3 no thing is found: a question has to come first, or nothing is handed out.";
 
 /// Arguments of `host ask`.
 #[derive(Debug, Args)]
@@ -40,6 +44,10 @@ pub struct AskArguments {
     /// The folder of an episode
     #[arg(long, value_name = "DIR")]
     pub episode: Option<PathBuf>,
+    /// The encoder that made the features of the things, to find them by their looks as well: openai:NAME (any server
+    /// that speaks OpenAI's Embeddings, at OPENAI_BASE_URL)
+    #[arg(long, value_name = "ENCODER")]
+    pub encoder: Option<EncoderName>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -51,6 +59,9 @@ pub enum AskError {
     /// The home is refused, or its server fails.
     #[error(transparent)]
     Home(#[from] HomeError),
+    /// The encoder cannot be used.
+    #[error(transparent)]
+    Encoder(#[from] ModelError),
     /// The result cannot be written as JSON.
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -62,7 +73,7 @@ impl AskError {
         match self {
             Self::Home(HomeError::Server(error)) => matches!(error, ServerError::Tool { .. }),
             Self::Home(_) => true,
-            Self::Json(_) => false,
+            Self::Encoder(_) | Self::Json(_) => false,
         }
     }
 }
@@ -79,21 +90,40 @@ pub struct Reply {
 /// Asks a home's server, which runs in this process.
 ///
 /// # Errors
-/// If the home or the speaker is refused, or the server fails.
+/// If the home, the speaker or the encoder is refused, or the server or the encoder fails.
 pub async fn ask(arguments: &AskArguments) -> Result<Reply, AskError> {
+    let encoder = arguments.encoder.clone();
+    let encoder = encoder
+        .map(|name| RemoteEncoder::from_environment(name, &ProviderSettings::default()))
+        .transpose()?;
     let server = ToolServer::in_process(open(arguments).await?).await.map_err(HomeError::from)?;
-    let request = FindObject {
-        query: arguments.words.clone(),
-        speaker: arguments.speaker.clone(),
-        ..FindObject::default()
-    };
-    let result: FindObjectResult = server.call("find_object", &request).await.map_err(HomeError::from)?;
+    let result = find(&server, arguments, encoder.as_ref()).await?;
     server.close().await;
     let text = match arguments.json {
         true => format!("{}\n", serde_json::to_string_pretty(&result)?),
         false => in_words(&result),
     };
     Ok(Reply { text, decision: result.decision })
+}
+
+/// The words for the thing alone are encoded, as the server has read them: neither whose it is nor where it is said to
+/// be can be seen on it.
+async fn find(
+    server: &ToolServer,
+    arguments: &AskArguments,
+    encoder: Option<&RemoteEncoder>,
+) -> Result<FindObjectResult, AskError> {
+    let mut request = FindObject {
+        query: arguments.words.clone(),
+        speaker: arguments.speaker.clone(),
+        ..FindObject::default()
+    };
+    let by_words: FindObjectResult = server.call("find_object", &request).await.map_err(HomeError::from)?;
+    let Some(encoder) = encoder.filter(|_| !by_words.interpretation.words.is_empty()) else {
+        return Ok(by_words);
+    };
+    request.query_embedding = Some(encoder.embed(&by_words.interpretation.words).await?);
+    Ok(server.call("find_object", &request).await.map_err(HomeError::from)?)
 }
 
 async fn open(arguments: &AskArguments) -> Result<CoinService, HomeError> {

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from anthropic.types.message_create_params import MessageCreateParamsNonStreaming as Anthropic
 from openai.types.chat.completion_create_params import CompletionCreateParamsNonStreaming as OpenAI
+from openai.types.embedding_create_params import EmbeddingCreateParams as OpenAIEmbeddings
 from pydantic import TypeAdapter
 
 # The members of unions that are kept; a union keeps everything else that is not a reference.
@@ -37,6 +38,7 @@ KEPT = {
         "ResponseFormatJSONSchema",
         "ResponseFormatText",
     },
+    "openai-embeddings": set(),
     "anthropic": {
         "CacheControlEphemeralParam",
         "InputSchemaTyped",
@@ -124,7 +126,7 @@ def references(schema):
 
 
 def reachable(schema):
-    definitions = schema.pop("$defs")
+    definitions = schema.pop("$defs", {})
     wanted, queue = set(), list(references(schema))
     while queue:
         name = queue.pop()
@@ -135,9 +137,9 @@ def reachable(schema):
     return schema
 
 
-def make(provider, package, typed_dict):
-    kept = KEPT[provider]
-    if package == "openai":
+def make(name, package, typed_dict):
+    kept = KEPT[name]
+    if name == "openai":
         # Long module paths stand before names that occur twice.
         kept = kept | {name for name in TypeAdapter(typed_dict).json_schema()["$defs"] if name.endswith("__Function")}
     schema = reachable(tidy(TypeAdapter(typed_dict).json_schema(), kept))
@@ -146,10 +148,11 @@ def make(provider, package, typed_dict):
         "$comment": f"Made by make.py from the Python package {package} {version(package)}.",
         **schema,
     }
-    path = Path(__file__).parent / f"{provider}.json"
+    path = Path(__file__).parent / f"{name}.json"
     path.write_text(json.dumps(schema, indent=1) + "\n", encoding="utf-8")
     print(f"{path.name}: {path.stat().st_size} bytes, {len(schema['$defs'])} definitions")
 
 
 make("openai", "openai", OpenAI)
+make("openai-embeddings", "openai", OpenAIEmbeddings)
 make("anthropic", "anthropic", Anthropic)

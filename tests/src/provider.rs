@@ -1,5 +1,5 @@
-//! A language-model provider that is scripted: an HTTP server that speaks OpenAI's chat completions and Anthropic's
-//! messages, checks every request against what the providers publish, and answers out of a brain of the project's
+//! A language-model provider that is scripted: an HTTP server that speaks OpenAI's chat completions and embeddings and
+//! Anthropic's messages, checks every request against what the providers publish, and answers out of a brain of the project's
 //! own, or wrongly where the script says so.
 //!
 //! ```no_run
@@ -28,6 +28,7 @@ use std::sync::mpsc::channel;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use coin_schemas::episode::FEATURE_DIMENSIONS;
 use tokio::sync::oneshot;
 
 pub use self::brain::{Brain, EmbeddedBrain, Turn};
@@ -40,6 +41,8 @@ use self::record::Log;
 pub struct Script {
     /// Who thinks. By default the project's own evidence model.
     pub brain: Arc<dyn Brain>,
+    /// How words become an embedding. By default all have the same, of 512 numbers.
+    pub encoder: Arc<dyn Fn(&str) -> Vec<f64> + Send + Sync>,
     /// How long every answer takes.
     pub delay: Duration,
     /// What goes wrong.
@@ -61,6 +64,7 @@ impl Default for Script {
     fn default() -> Self {
         Self {
             brain: Arc::new(EmbeddedBrain::default()),
+            encoder: Arc::new(|_| vec![1.0; FEATURE_DIMENSIONS]),
             delay: Duration::ZERO,
             faults: FaultPlan::none(),
             seed: 0,

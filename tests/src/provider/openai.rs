@@ -124,6 +124,16 @@ pub(super) fn answer(reply: &ChatReply, model: &Value, id: &str, usage: TokenUsa
     })
 }
 
+/// The embedding of one text.
+pub(super) fn embedding(embedding: &[f64], model: &Value) -> Value {
+    json!({
+        "object": "list",
+        "data": [{"object": "embedding", "index": 0, "embedding": embedding}],
+        "model": model,
+        "usage": {"prompt_tokens": 1, "total_tokens": 1},
+    })
+}
+
 /// An error. `parameter` is what it is about.
 pub(super) fn error(message: &str, kind: &str, code: Option<&str>, parameter: Option<&str>) -> Value {
     json!({"error": {"message": message, "type": kind, "param": parameter, "code": code}})

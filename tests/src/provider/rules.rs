@@ -20,28 +20,48 @@ pub(super) fn violations(
     headers: &BTreeMap<String, String>,
     body: &Value,
 ) -> Vec<String> {
-    let mut found = Vec::new();
-    if headers.get("content-type").map(String::as_str) != Some("application/json") {
-        found.push("content-type must be application/json".to_owned());
-    }
-    found.extend(schema(provider).iter_errors(body).map(|problem| {
-        format!("{}: {}", problem.instance_path(), problem.to_string().chars().take(400).collect::<String>())
-    }));
+    static OPENAI: OnceLock<Validator> = OnceLock::new();
+    static ANTHROPIC: OnceLock<Validator> = OnceLock::new();
+    let mut found = general_violations(headers);
     match provider {
-        Provider::OpenAi => openai::check(headers, body, &mut found),
-        Provider::Anthropic => anthropic::check(headers, body, &mut found),
+        Provider::OpenAi => {
+            found.extend(schema_violations(&OPENAI, "openai.json", body));
+            openai::check(headers, body, &mut found);
+        }
+        Provider::Anthropic => {
+            found.extend(schema_violations(&ANTHROPIC, "anthropic.json", body));
+            anthropic::check(headers, body, &mut found);
+        }
     }
     found
 }
 
-fn schema(provider: Provider) -> &'static Validator {
-    static OPENAI: OnceLock<Validator> = OnceLock::new();
-    static ANTHROPIC: OnceLock<Validator> = OnceLock::new();
-    let (validator, name) = match provider {
-        Provider::OpenAi => (&OPENAI, "openai.json"),
-        Provider::Anthropic => (&ANTHROPIC, "anthropic.json"),
+/// Everything that is wrong with a request for an embedding, in OpenAI's form.
+pub(super) fn embedding_violations(headers: &BTreeMap<String, String>, body: &Value) -> Vec<String> {
+    static EMBEDDINGS: OnceLock<Validator> = OnceLock::new();
+    let mut found = general_violations(headers);
+    found.extend(schema_violations(&EMBEDDINGS, "openai-embeddings.json", body));
+    openai::check_key(headers, &mut found);
+    if body["input"].as_str().is_some_and(str::is_empty) {
+        found.push("input must not be empty".to_owned());
+    }
+    found
+}
+
+fn general_violations(headers: &BTreeMap<String, String>) -> Vec<String> {
+    let is_json = headers.get("content-type").map(String::as_str) == Some("application/json");
+    if is_json { Vec::new() } else { vec!["content-type must be application/json".to_owned()] }
+}
+
+fn schema_violations(schema: &'static OnceLock<Validator>, name: &str, body: &Value) -> Vec<String> {
+    let shown = |problem: jsonschema::ValidationError<'_>| {
+        format!("{}: {}", problem.instance_path(), problem.to_string().chars().take(400).collect::<String>())
     };
-    validator.get_or_init(|| {
+    validator(schema, name).iter_errors(body).map(shown).collect()
+}
+
+fn validator(schema: &'static OnceLock<Validator>, name: &str) -> &'static Validator {
+    schema.get_or_init(|| {
         let path = repository().join("tests/schemas").join(name);
         let text = std::fs::read_to_string(&path)
             .unwrap_or_else(|error| panic!("{} cannot be read: {error}", path.display()));

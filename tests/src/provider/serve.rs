@@ -28,6 +28,13 @@ use super::record::{Entry, Log};
 use super::spoil::spoil;
 use super::{Script, anthropic, openai, rules};
 
+/// What a path offers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Service {
+    Conversation,
+    Embeddings,
+}
+
 struct Shared {
     script: Script,
     log: Arc<Log>,
@@ -57,9 +64,10 @@ pub(super) async fn serve(
 }
 
 async fn answer(State(shared): State<Arc<Shared>>, uri: Uri, headers: HeaderMap, body: Bytes) -> Response {
-    let provider = match uri.path() {
-        "/v1/chat/completions" => Some(Provider::OpenAi),
-        "/v1/messages" => Some(Provider::Anthropic),
+    let asked = match uri.path() {
+        "/v1/chat/completions" => Some((Provider::OpenAi, Service::Conversation)),
+        "/v1/embeddings" => Some((Provider::OpenAi, Service::Embeddings)),
+        "/v1/messages" => Some((Provider::Anthropic, Service::Conversation)),
         _ => None,
     };
     let headers: BTreeMap<String, String> = headers
@@ -67,14 +75,20 @@ async fn answer(State(shared): State<Arc<Shared>>, uri: Uri, headers: HeaderMap,
         .map(|(name, value)| (name.to_string(), String::from_utf8_lossy(value.as_bytes()).into_owned()))
         .collect();
     let body: Value = serde_json::from_slice(&body).unwrap_or_default();
+    let provider = asked.map(|(provider, _)| provider);
     let entry = shared.log.begin(provider, uri.path(), headers.clone(), body.clone());
-    let Some(provider) = provider else {
+    let Some((provider, service)) = asked else {
         entry.note(|request| request.violations.push(format!("there is nothing at {}", request.path)));
         return finish(&entry, StatusCode::NOT_FOUND.into_response());
     };
-    entry.note(|request| request.violations = rules::violations(provider, &headers, &body));
-    let exchange =
-        Exchange { script: &shared.script, entry: &entry, provider, key: key(provider, &headers), body };
+    entry.note(|request| {
+        request.violations = match service {
+            Service::Conversation => rules::violations(provider, &headers, &body),
+            Service::Embeddings => rules::embedding_violations(&headers, &body),
+        }
+    });
+    let key = key(provider, &headers);
+    let exchange = Exchange { script: &shared.script, entry: &entry, provider, service, key, body };
     let response = exchange.respond().await;
     finish(&entry, response)
 }
@@ -96,6 +110,7 @@ struct Exchange<'a> {
     script: &'a Script,
     entry: &'a Entry,
     provider: Provider,
+    service: Service,
     key: Option<String>,
     body: Value,
 }
@@ -136,7 +151,13 @@ impl Exchange<'_> {
             std::future::pending::<()>().await;
         }
         tokio::time::sleep(self.script.delay).await;
-        self.think(&turn, fault)
+        match self.service {
+            Service::Conversation => self.think(&turn, fault),
+            Service::Embeddings => {
+                let embedding = (self.script.encoder)(self.body["input"].as_str().unwrap_or_default());
+                json(200, &openai::embedding(&embedding, &self.body["model"]))
+            }
+        }
     }
 
     fn think(&self, turn: &Turn, fault: Option<Fault>) -> Response {

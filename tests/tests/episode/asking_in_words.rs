@@ -1,6 +1,10 @@
 //! `host ask`: a person's words, and what comes of them.
 
-use coin_tests::{EpisodeBuilder, Home, Program};
+use std::sync::Arc;
+
+use coin_schemas::episode::FEATURE_DIMENSIONS;
+use coin_tests::provider::{Script, ScriptedProvider, refused_url};
+use coin_tests::{EpisodeBuilder, Home, Program, feature};
 use rstest::rstest;
 use serde_json::json;
 
@@ -82,4 +86,55 @@ fn wrong_use_is_refused() {
     Program::new("host").args(["ask", "my mug"]).run().expect_code(2).expect_stderr(&["--db", "--episode"]);
     let missing = home.join("missing.db");
     Program::new("host").args(["ask", "my mug", "--db"]).arg(missing).run().expect_code(2);
+}
+
+/// Ten vases, each of its own looks.
+fn vases() -> Home {
+    let mut episode = EpisodeBuilder::new().features((0..10).map(|place| feature(&[(place, 1.0)])));
+    for number in 0..10 {
+        episode = episode.object(&number.to_string(), "vase", [f64::from(number), 1.0, 0.9]);
+    }
+    Home::of(&episode)
+}
+
+/// Finds that the vase 7 looks like what is asked for, and the others more or less not.
+fn seventh(_: &str) -> Vec<f64> {
+    (0..FEATURE_DIMENSIONS).map(|place| if place == 7 { 1.0 } else { (place % 3) as f64 / 50.0 }).collect()
+}
+
+#[test]
+fn a_thing_is_found_by_its_looks() {
+    let provider = ScriptedProvider::start(Script { encoder: Arc::new(seventh), ..Script::default() });
+    let home = vases();
+    let asked = || ask(&home, &["the zebra on the shelf", "--json"]);
+    assert_eq!(asked().run().expect_code(3).json()["matches"], json!([]));
+    let by_looks = asked().args(["--encoder", "openai:clip"]).env("OPENAI_BASE_URL", provider.openai_url());
+    let result = by_looks.run().expect_code(0).json();
+    assert_eq!(result["object"]["id"], "7", "{result}");
+    provider.assert_no_violations();
+    let requests = provider.requests();
+    let [request] = &requests[..] else { panic!("{requests:?}") };
+    let body = json!({"model": "clip", "input": "zebra", "encoding_format": "float"});
+    assert_eq!((&*request.path, &request.body), ("/v1/embeddings", &body));
+}
+
+#[test]
+fn an_encoder_that_is_of_no_use_is_told() {
+    let home = vases();
+    let asked = |encoder| ask(&home, &["the zebra", "--encoder", encoder]);
+    asked("clip").run().expect_code(2).expect_stderr(&["\"clip\" names no encoder", "openai:NAME"]);
+    let nobody = refused_url();
+    asked("openai:clip").env("OPENAI_BASE_URL", &nobody).run().expect_code(1).expect_stderr(&[
+        "no model answers at",
+        &nobody,
+        "ask without --encoder",
+    ]);
+    let provider =
+        ScriptedProvider::start(Script { encoder: Arc::new(|_| vec![1.0; 768]), ..Script::default() });
+    asked("openai:other").env("OPENAI_BASE_URL", provider.openai_url()).run().expect_code(2).expect_stderr(
+        &[
+            "query_embedding: 768 numbers were given; 512",
+            "from the encoder that made the features of the map",
+        ],
+    );
 }

@@ -4,6 +4,7 @@
 mod answers;
 mod concessions;
 mod connections;
+mod embeddings;
 mod keys;
 mod refusals;
 mod retries;

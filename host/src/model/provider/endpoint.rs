@@ -48,10 +48,49 @@ impl fmt::Debug for ApiKey {
     }
 }
 
-/// Where a provider is reached and with which key.
+/// What is asked of a provider.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Service {
+    /// The turns of a conversation.
+    Conversation(Provider),
+    /// Embeddings of texts, in OpenAI's form.
+    Embeddings,
+}
+
+impl Service {
+    /// Whose form it has.
+    pub(super) fn provider(self) -> Provider {
+        match self {
+            Self::Conversation(provider) => provider,
+            Self::Embeddings => Provider::OpenAi,
+        }
+    }
+
+    /// How to do without it.
+    pub(super) fn without(self) -> &'static str {
+        match self {
+            Self::Conversation(_) => "run with --model embedded",
+            Self::Embeddings => "ask without --encoder",
+        }
+    }
+
+    /// The path of requests below a base URL's path, which has no slash at its end.
+    fn path_below(self, base: &str) -> String {
+        match self {
+            Self::Conversation(Provider::OpenAi) => format!("{base}/chat/completions"),
+            // The version belongs to the path, but is written into base URLs all the same.
+            Self::Conversation(Provider::Anthropic) => {
+                format!("{}/v1/messages", base.strip_suffix("/v1").unwrap_or(base))
+            }
+            Self::Embeddings => format!("{base}/embeddings"),
+        }
+    }
+}
+
+/// Where a service is reached and with which key.
 #[derive(Debug, Clone)]
 pub(super) struct Endpoint {
-    pub(super) provider: Provider,
+    pub(super) service: Service,
     /// The base URL as it is shown: no user information, no trailing slash.
     pub(super) shown: String,
     /// Where requests are posted.
@@ -60,42 +99,61 @@ pub(super) struct Endpoint {
 }
 
 impl Endpoint {
+    /// The endpoint that the environment names.
+    pub(super) fn from_environment(service: Service) -> Result<Self, ModelError> {
+        Self::from_variables(service, |name| match std::env::var(name) {
+            Ok(value) => Ok(Some(value)),
+            Err(std::env::VarError::NotPresent) => Ok(None),
+            Err(std::env::VarError::NotUnicode(_)) => {
+                Err(unusable(format!("{name} is no text in UTF-8; set it anew or unset it")))
+            }
+        })
+    }
+
     /// Reads the provider's two variables with `variable`; one that is blank counts as unset.
     pub(super) fn from_variables(
-        provider: Provider,
+        service: Service,
         variable: impl Fn(&str) -> Result<Option<String>, ModelError>,
     ) -> Result<Self, ModelError> {
+        let provider = service.provider();
         let base = variable(provider.url_variable())?.filter(|value| !value.trim().is_empty());
         let key = variable(provider.key_variable())?;
-        Self::new(provider, base.as_deref().unwrap_or(provider.default_url()), key.as_deref())
+        Self::new(service, base.as_deref().unwrap_or(provider.default_url()), key.as_deref())
     }
 
     /// A base URL and a key as they were given.
-    pub(super) fn new(provider: Provider, base: &str, key: Option<&str>) -> Result<Self, ModelError> {
+    pub(super) fn new(service: Service, base: &str, key: Option<&str>) -> Result<Self, ModelError> {
+        let provider = service.provider();
         let base_url = read_url(provider, base.trim())?;
         let key = key.map(|key| ApiKey::read(key, provider.key_variable())).transpose()?.flatten();
         let shown = base_url.as_str().trim_end_matches('/').to_owned();
         let is_own_service = shown == provider.default_url();
         if key.is_none() && (is_own_service || provider.key_need() == KeyNeed::Always) {
             return Err(unusable(format!(
-                "there is no key for {provider}; set {} to one{}, or run with --model embedded",
+                "there is no key for {provider}; set {} to one{}, or {}",
                 provider.key_variable(),
                 match provider.key_need() {
                     KeyNeed::Always => String::new(),
                     KeyNeed::OwnService =>
                         format!(", set {} to a server that needs none", provider.url_variable()),
                 },
+                service.without(),
             )));
         }
         let mut url = base_url;
         let path = url.path().trim_end_matches('/').to_owned();
-        url.set_path(&provider.path_below(&path));
-        Ok(Self { provider, shown, url, key })
+        url.set_path(&service.path_below(&path));
+        Ok(Self { service, shown, url, key })
+    }
+
+    /// Whose form it has.
+    pub(super) fn provider(&self) -> Provider {
+        self.service.provider()
     }
 
     /// Whether it is the service of the provider itself.
     pub(super) fn is_own_service(&self) -> bool {
-        self.shown == self.provider.default_url()
+        self.shown == self.provider().default_url()
     }
 
     /// Whether the server is on this machine.
@@ -114,7 +172,7 @@ impl Endpoint {
             tracing::warn!(
                 url = self.shown,
                 "the key in {} is sent over plain http, where others on the network can read it",
-                self.provider.key_variable()
+                self.provider().key_variable()
             );
         }
     }

@@ -34,9 +34,10 @@ pub(super) fn explain(
 fn nobody_there(endpoint: &Endpoint, reason: &str) -> ModelError {
     let first = if endpoint.is_own_service() { "check the connection to the internet" } else { "start it" };
     unusable(format!(
-        "no model answers at {}: {reason}; {first}, set {}, or run with --model embedded",
+        "no model answers at {}: {reason}; {first}, set {}, or {}",
         endpoint.shown,
-        endpoint.provider.url_variable()
+        endpoint.provider().url_variable(),
+        endpoint.service.without()
     ))
 }
 
@@ -47,13 +48,14 @@ fn refused(
     policy: &RetryPolicy,
     tried: &str,
 ) -> ModelError {
-    let Endpoint { provider, shown, .. } = endpoint;
+    let Endpoint { service, shown, .. } = endpoint;
+    let provider = service.provider();
     let (key, url) = (provider.key_variable(), provider.url_variable());
     let status = refusal.status;
     if refusal.quota == Quota::UsedUp {
         return unusable(format!(
-            "the quota is used up ({refusal}); add credit to the account of the key in {key}, or run with \
-             --model embedded"
+            "the quota is used up ({refusal}); add credit to the account of the key in {key}, or {}",
+            service.without()
         ));
     }
     match (status, refusal.retry_after) {

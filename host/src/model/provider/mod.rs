@@ -1,4 +1,5 @@
-//! Language models behind HTTP: OpenAI's chat completions, which many servers speak, and Anthropic's messages.
+//! Language models behind HTTP: OpenAI's chat completions, which many servers speak, and Anthropic's messages; and
+//! encoders of words, in OpenAI's form.
 //!
 //! A request is made and an answer read by pure functions (`openai`, `anthropic`). Between them stands one way
 //! of sending: with a time limit, retries, a circuit breaker over all calls, and parameters that are taken back
@@ -7,6 +8,8 @@
 mod anthropic;
 mod breaker;
 mod concessions;
+mod connection;
+mod encoder;
 mod endpoint;
 mod explanation;
 mod failure;
@@ -21,12 +24,12 @@ use std::time::Duration;
 use async_trait::async_trait;
 use serde_json::Value;
 
-use self::breaker::Breaker;
 use self::concessions::{Concessions, Offer};
-use self::endpoint::{Endpoint, KeyNeed};
+use self::connection::Connection;
+pub use self::encoder::{EncoderName, RemoteEncoder, UnknownEncoder};
+use self::endpoint::{Endpoint, KeyNeed, Service};
 use self::retry::GivenUp;
 pub use self::retry::RetryPolicy;
-use self::transport::Transport;
 use super::{ChatModel, ChatReply, ChatRequest, Message, ModelError};
 
 /// How long a model may take for one answer unless something else is set.
@@ -84,15 +87,6 @@ impl Provider {
         match self {
             Self::OpenAi => KeyNeed::OwnService,
             Self::Anthropic => KeyNeed::Always,
-        }
-    }
-
-    /// The path of requests below a base URL's path, which has no slash at its end.
-    fn path_below(self, base: &str) -> String {
-        match self {
-            Self::OpenAi => format!("{base}/chat/completions"),
-            // The version belongs to the path, but is written into base URLs all the same.
-            Self::Anthropic => format!("{}/v1/messages", base.strip_suffix("/v1").unwrap_or(base)),
         }
     }
 
@@ -155,9 +149,8 @@ pub struct RemoteModel {
     name: String,
     /// The model's name at the provider.
     model: String,
-    settings: ProviderSettings,
-    transport: Transport,
-    breaker: Breaker,
+    seed: u64,
+    connection: Connection,
     concessions: Concessions,
 }
 
@@ -171,14 +164,7 @@ impl RemoteModel {
         model_name: &str,
         settings: ProviderSettings,
     ) -> Result<Self, ModelError> {
-        let endpoint = Endpoint::from_variables(provider, |name| match std::env::var(name) {
-            Ok(value) => Ok(Some(value)),
-            Err(std::env::VarError::NotPresent) => Ok(None),
-            Err(std::env::VarError::NotUnicode(_)) => Err(ModelError::Unusable {
-                reason: format!("{name} is no text in UTF-8; set it anew or unset it"),
-            }),
-        })?;
-        Self::of(endpoint, model_name, settings)
+        Self::of(Endpoint::from_environment(Service::Conversation(provider))?, model_name, &settings)
     }
 
     /// A model at a base URL, such as `http://127.0.0.1:11434/v1`, with a key where the server wants one.
@@ -192,41 +178,26 @@ impl RemoteModel {
         key: Option<&str>,
         settings: ProviderSettings,
     ) -> Result<Self, ModelError> {
-        Self::of(Endpoint::new(provider, base_url, key)?, model_name, settings)
+        Self::of(Endpoint::new(Service::Conversation(provider), base_url, key)?, model_name, &settings)
     }
 
-    fn of(endpoint: Endpoint, model_name: &str, settings: ProviderSettings) -> Result<Self, ModelError> {
-        endpoint.warn_of_plain_text();
+    fn of(endpoint: Endpoint, model_name: &str, settings: &ProviderSettings) -> Result<Self, ModelError> {
+        let provider = endpoint.provider();
         Ok(Self {
-            name: format!("{}:{model_name}", endpoint.provider.prefix()),
+            name: format!("{}:{model_name}", provider.prefix()),
             model: model_name.to_owned(),
-            breaker: Breaker::new(settings.retry.breaker_failures, settings.retry.breaker_pause),
-            concessions: Concessions::new(endpoint.provider),
-            transport: Transport::new(endpoint, settings.timeout)?,
-            settings,
+            concessions: Concessions::new(provider),
+            connection: Connection::new(endpoint, settings)?,
+            seed: settings.seed,
         })
     }
 
     fn provider(&self) -> Provider {
-        self.transport.endpoint().provider
+        self.connection.endpoint().provider()
     }
 
-    /// Sends one body until it is answered or given up.
     async fn send(&self, body: &Value, taken: &BTreeSet<String>) -> Result<ChatReply, GivenUp> {
-        let body = body.to_string();
-        retry::persist(&self.settings.retry, || async {
-            let permit = self.breaker.permit()?;
-            let outcome =
-                self.transport.post(&body, |answer| self.provider().reply(answer, taken.clone())).await;
-            permit.settle(outcome.as_ref().err());
-            outcome
-        })
-        .await
-    }
-
-    fn explain(&self, given_up: &GivenUp) -> ModelError {
-        let endpoint = self.transport.endpoint();
-        explanation::explain(given_up, endpoint, &self.model, &self.settings.retry, self.breaker.history())
+        self.connection.send(body, |answer| self.provider().reply(answer, taken.clone())).await
     }
 }
 
@@ -240,7 +211,7 @@ impl ChatModel for RemoteModel {
         let taken = call_ids(request.conversation);
         let mut offer = self.concessions.offer();
         loop {
-            let body = self.provider().body(&self.model, request, &offer, self.settings.seed);
+            let body = self.provider().body(&self.model, request, &offer, self.seed);
             let given_up = match self.send(&body, &taken).await {
                 Ok(reply) => {
                     self.concessions.accepted(&offer, &body);
@@ -249,7 +220,7 @@ impl ChatModel for RemoteModel {
                 Err(given_up) => given_up,
             };
             let Some(less) = self.concessions.less(&offer, &body, &given_up.failure) else {
-                return Err(self.explain(&given_up));
+                return Err(self.connection.explain(&given_up, &self.model));
             };
             let failure = &given_up.failure;
             tracing::info!(model = self.name, %failure, "a parameter was refused; going on without it");

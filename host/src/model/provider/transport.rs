@@ -10,7 +10,7 @@ use super::Provider;
 use super::endpoint::Endpoint;
 use super::failure::{Failure, Refusal};
 use super::retry::retry_after;
-use crate::model::{ChatReply, ModelError};
+use crate::model::ModelError;
 
 /// How long connecting may take.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
@@ -55,11 +55,11 @@ impl Transport {
     }
 
     /// Posts a body and reads the answer with `read`.
-    pub(super) async fn post(
+    pub(super) async fn post<T>(
         &self,
         body: &str,
-        read: impl Fn(&Value) -> Result<ChatReply, String>,
-    ) -> Result<ChatReply, Failure> {
+        read: impl Fn(&Value) -> Result<T, String>,
+    ) -> Result<T, Failure> {
         let exchange = async {
             let request = self.client.post(self.endpoint.url.clone()).headers(self.headers.clone());
             let response = request
@@ -73,11 +73,11 @@ impl Transport {
         in_time.unwrap_or(Err(Failure::TimedOut(self.timeout)))
     }
 
-    async fn read(
+    async fn read<T>(
         &self,
         response: Response,
-        read: impl Fn(&Value) -> Result<ChatReply, String>,
-    ) -> Result<ChatReply, Failure> {
+        read: impl Fn(&Value) -> Result<T, String>,
+    ) -> Result<T, Failure> {
         let status = response.status();
         let retry_after = retry_after(response.headers(), SystemTime::now());
         let body = self.body(response).await?;
@@ -110,7 +110,7 @@ impl Transport {
 fn headers(endpoint: &Endpoint) -> HeaderMap {
     let json = HeaderValue::from_static("application/json");
     let mut headers = HeaderMap::from_iter([(CONTENT_TYPE, json.clone()), (ACCEPT, json)]);
-    let (name, scheme) = match endpoint.provider {
+    let (name, scheme) = match endpoint.provider() {
         Provider::OpenAi => (AUTHORIZATION, "Bearer "),
         Provider::Anthropic => {
             let version = HeaderValue::from_static(ANTHROPIC_VERSION);

@@ -8,9 +8,7 @@ use super::super::openai::list;
 use super::{Calls, is_name};
 
 pub(super) fn check(headers: &BTreeMap<String, String>, body: &Value, found: &mut Vec<String>) {
-    if headers.get("authorization").is_some_and(|value| !value.starts_with("Bearer ")) {
-        found.push("authorization must be a bearer token".to_owned());
-    }
+    check_key(headers, found);
     if body["tools"].as_array().is_some_and(Vec::is_empty) {
         found.push("tools must not be an empty list".to_owned());
     }
@@ -30,6 +28,12 @@ pub(super) fn check(headers: &BTreeMap<String, String>, body: &Value, found: &mu
     }
     check_messages(list(&body["messages"]), found);
     check_form(body, found);
+}
+
+pub(super) fn check_key(headers: &BTreeMap<String, String>, found: &mut Vec<String>) {
+    if headers.get("authorization").is_some_and(|value| !value.starts_with("Bearer ")) {
+        found.push("authorization must be a bearer token".to_owned());
+    }
 }
 
 fn check_messages(messages: &[Value], found: &mut Vec<String>) {

@@ -4,18 +4,19 @@ use std::collections::BTreeMap;
 
 use rstest::rstest;
 
-use super::super::endpoint::Endpoint;
+use super::super::endpoint::{Endpoint, Service};
 use super::super::{Provider, ProviderSettings, RemoteModel};
 use crate::model::{ChatModel, ModelError};
 
 fn endpoint(provider: Provider, variables: &[(&str, &str)]) -> Result<Endpoint, String> {
     let variables: BTreeMap<&str, &str> = variables.iter().copied().collect();
-    Endpoint::from_variables(provider, |name| Ok(variables.get(name).map(|&value| value.to_owned()))).map_err(
-        |error| match error {
-            ModelError::Unusable { reason } => reason,
-            other => panic!("{other:?}"),
-        },
-    )
+    Endpoint::from_variables(Service::Conversation(provider), |name| {
+        Ok(variables.get(name).map(|&value| value.to_owned()))
+    })
+    .map_err(|error| match error {
+        ModelError::Unusable { reason } => reason,
+        other => panic!("{other:?}"),
+    })
 }
 
 #[rstest]
@@ -81,12 +82,17 @@ fn a_malformed_url_is_told_without_its_secrets(#[case] given: &str, #[case] show
 #[case("http://192.168.0.7/v1", false)]
 #[case("http://127.example/v1", false)]
 fn this_machine_is_known(#[case] base: &str, #[case] is_here: bool) {
-    assert_eq!(Endpoint::new(Provider::OpenAi, base, Some("k")).unwrap().is_loopback(), is_here);
+    assert_eq!(
+        Endpoint::new(Service::Conversation(Provider::OpenAi), base, Some("k")).unwrap().is_loopback(),
+        is_here
+    );
 }
 
 #[test]
 fn the_key_is_shown_nowhere() {
-    let endpoint = Endpoint::new(Provider::OpenAi, "http://127.0.0.1:1/v1", Some("sk-secret")).unwrap();
+    let endpoint =
+        Endpoint::new(Service::Conversation(Provider::OpenAi), "http://127.0.0.1:1/v1", Some("sk-secret"))
+            .unwrap();
     let header = endpoint.key.as_ref().unwrap().header("Bearer ").unwrap();
     assert!(header.is_sensitive());
     assert!(!format!("{endpoint:?} {header:?}").contains("sk-secret"));
