@@ -37,12 +37,15 @@ pub use self::record::Recorded;
 
 use self::record::Log;
 
+/// How words become an embedding.
+pub type Encoder = dyn Fn(&str) -> Vec<f64> + Send + Sync;
+
 /// What a scripted provider does. The default answers every request at once, rightly, and to anybody.
 pub struct Script {
     /// Who thinks. By default the project's own evidence model.
     pub brain: Arc<dyn Brain>,
-    /// How words become an embedding. By default all have the same, of 512 numbers.
-    pub encoder: Arc<dyn Fn(&str) -> Vec<f64> + Send + Sync>,
+    /// How words become an embedding. By default all become the same, of 512 numbers.
+    pub encoder: Arc<Encoder>,
     /// How long every answer takes.
     pub delay: Duration,
     /// What goes wrong.

@@ -114,7 +114,7 @@ pub fn ready(choice: &ModelChoice, settings: &ModelSettings<'_>) -> Result<Arc<d
         ModelChoice::Remote(provider, name) => {
             let ModelSettings { seed, timeout, .. } = *settings;
             let settings = ProviderSettings { seed, timeout, ..ProviderSettings::default() };
-            Arc::new(RemoteModel::from_environment(*provider, name, settings)?)
+            Arc::new(RemoteModel::from_environment(*provider, name, &settings)?)
         }
         ModelChoice::Replay(file) => Arc::new(Replay::open(file)?),
     };

@@ -12,7 +12,7 @@ use super::{KEY, eventually, first_turn, model, model_with, settings, timed, una
 async fn a_server_that_was_never_there_is_told_with_the_next_step() {
     for (provider, path) in [(Provider::OpenAi, "/v1"), (Provider::Anthropic, "")] {
         let url = format!("{}{path}", refused_url());
-        let model = RemoteModel::at(provider, "llama", &url, Some(KEY), settings()).unwrap();
+        let model = RemoteModel::at(provider, "llama", &url, Some(KEY), &settings()).unwrap();
         assert_eq!(
             unusable(first_turn(&model).await),
             format!(
@@ -27,7 +27,7 @@ async fn a_server_that_was_never_there_is_told_with_the_next_step() {
 async fn a_server_that_speaks_no_tls_is_told() {
     let server = ScriptedProvider::start(Script::default());
     let url = server.openai_url().replace("http://", "https://");
-    let model = RemoteModel::at(Provider::OpenAi, "llama", &url, Some(KEY), settings()).unwrap();
+    let model = RemoteModel::at(Provider::OpenAi, "llama", &url, Some(KEY), &settings()).unwrap();
     let reason = unusable(first_turn(&model).await);
     assert!(reason.starts_with(&format!("no model answers at {url}: ")), "{reason}");
     assert!(reason.contains("corrupt message"), "{reason}");

@@ -17,7 +17,7 @@ async fn a_key_is_sent_without_its_surroundings() {
         let server = ScriptedProvider::start(Script::default());
         let key = format!(" {KEY}\n");
         let url = base_url(&server, provider);
-        let model = RemoteModel::at(provider, "scripted-1", &url, Some(&key), settings()).unwrap();
+        let model = RemoteModel::at(provider, "scripted-1", &url, Some(&key), &settings()).unwrap();
         first_turn(&model).await.unwrap();
         assert_eq!(server.requests()[0].headers[header], value);
     }
@@ -26,7 +26,7 @@ async fn a_key_is_sent_without_its_surroundings() {
 #[tokio::test]
 async fn a_server_of_ones_own_needs_no_key() {
     let server = ScriptedProvider::start(Script::default());
-    let model = RemoteModel::at(Provider::OpenAi, "llama", &server.openai_url(), None, settings()).unwrap();
+    let model = RemoteModel::at(Provider::OpenAi, "llama", &server.openai_url(), None, &settings()).unwrap();
     first_turn(&model).await.unwrap();
     assert!(!server.requests()[0].headers.contains_key("authorization"));
     server.assert_no_violations();
@@ -36,7 +36,7 @@ async fn a_server_of_ones_own_needs_no_key() {
 async fn a_server_of_ones_own_that_wants_a_key_says_so() {
     let server = ScriptedProvider::start(Script { key: Some(KEY.to_owned()), ..Script::default() });
     let url = server.openai_url();
-    let model = RemoteModel::at(Provider::OpenAi, "llama", &url, None, settings()).unwrap();
+    let model = RemoteModel::at(Provider::OpenAi, "llama", &url, None, &settings()).unwrap();
     assert_eq!(
         super::unusable(first_turn(&model).await),
         format!("{url} wants a key (401); set OPENAI_API_KEY to one")
@@ -111,7 +111,7 @@ fn a_key_in_the_clear_is_warned_of_once() {
     let warnings = |url: &str, key: Option<&str>| {
         let logged = Logged::default();
         let _logging = logged.start();
-        RemoteModel::at(Provider::OpenAi, "llama", url, key, settings()).unwrap();
+        RemoteModel::at(Provider::OpenAi, "llama", url, key, &settings()).unwrap();
         assert!(!logged.text().contains(KEY));
         logged.text().matches("sent over plain http").count()
     };

@@ -42,7 +42,7 @@ fn base_url(server: &ScriptedProvider, provider: Provider) -> String {
 }
 
 fn model_with(server: &ScriptedProvider, provider: Provider, settings: ProviderSettings) -> RemoteModel {
-    RemoteModel::at(provider, "scripted-1", &base_url(server, provider), Some(KEY), settings).unwrap()
+    RemoteModel::at(provider, "scripted-1", &base_url(server, provider), Some(KEY), &settings).unwrap()
 }
 
 fn model(server: &ScriptedProvider, provider: Provider) -> RemoteModel {

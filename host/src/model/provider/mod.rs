@@ -162,9 +162,9 @@ impl RemoteModel {
     pub fn from_environment(
         provider: Provider,
         model_name: &str,
-        settings: ProviderSettings,
+        settings: &ProviderSettings,
     ) -> Result<Self, ModelError> {
-        Self::of(Endpoint::from_environment(Service::Conversation(provider))?, model_name, &settings)
+        Self::of(Endpoint::from_environment(Service::Conversation(provider))?, model_name, settings)
     }
 
     /// A model at a base URL, such as `http://127.0.0.1:11434/v1`, with a key where the server wants one.
@@ -176,9 +176,9 @@ impl RemoteModel {
         model_name: &str,
         base_url: &str,
         key: Option<&str>,
-        settings: ProviderSettings,
+        settings: &ProviderSettings,
     ) -> Result<Self, ModelError> {
-        Self::of(Endpoint::new(Service::Conversation(provider), base_url, key)?, model_name, &settings)
+        Self::of(Endpoint::new(Service::Conversation(provider), base_url, key)?, model_name, settings)
     }
 
     fn of(endpoint: Endpoint, model_name: &str, settings: &ProviderSettings) -> Result<Self, ModelError> {

@@ -102,6 +102,6 @@ fn the_key_is_shown_nowhere() {
 #[test]
 fn a_model_is_named_after_its_provider() {
     let settings = ProviderSettings::default();
-    let model = RemoteModel::at(Provider::Anthropic, "claude-x", "http://127.0.0.1:1", Some("k"), settings);
+    let model = RemoteModel::at(Provider::Anthropic, "claude-x", "http://127.0.0.1:1", Some("k"), &settings);
     assert_eq!(model.unwrap().name(), "anthropic:claude-x");
 }
