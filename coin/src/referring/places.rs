@@ -62,7 +62,7 @@ pub(super) enum Place<'a> {
         /// How.
         relation: Relation,
         /// The things.
-        anchors: Vec<usize>,
+        anchors: Vec<Anchor>,
     },
     /// Nothing that the map knows.
     Unknown,
@@ -86,12 +86,17 @@ impl<'a> Place<'a> {
         if is_room && hint.relation == Relation::In {
             return Ok(Self::Rooms(rooms));
         }
-        let mut anchors = anchors(things, &hint.anchor, owners)?;
+        let anchors = anchors(things, &hint.anchor, owners)?;
         if anchors.is_empty() {
             return Ok(if is_room { Self::Rooms(rooms) } else { Self::Unknown });
         }
-        anchors.sort_by(|&left, &right| along(&things[left]).total_cmp(&along(&things[right])));
-        Ok(Self::Beside { relation: hint.relation, anchors })
+        Ok(Self::beside(things, hint.relation, anchors))
+    }
+
+    fn beside(things: &[MappedThing<'_>], relation: Relation, anchors: Vec<usize>) -> Self {
+        let mut anchors: Vec<Anchor> = anchors.into_iter().map(|thing| Anchor::of(things, thing)).collect();
+        anchors.sort_by(|left, right| left.plan[0].total_cmp(&right.plan[0]));
+        Self::Beside { relation, anchors }
     }
 
     /// How well the thing's place fits, 0…1. A place that the map does not know says nothing and counts 1.
@@ -107,19 +112,29 @@ impl<'a> Place<'a> {
     }
 }
 
-fn along(thing: &MappedThing<'_>) -> f64 {
-    thing.position.metres()[0]
+/// A thing beside which others may be, with its place on the floor plan at hand: there may be thousands to pass over.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Anchor {
+    thing: usize,
+    plan: [f64; 2],
+}
+
+impl Anchor {
+    fn of(things: &[MappedThing<'_>], thing: usize) -> Self {
+        let [x, y, _] = things[thing].position.metres();
+        Self { thing, plan: [x, y] }
+    }
 }
 
 /// The best fit to any of the things, which is never the thing itself.
-fn beside(things: &[MappedThing<'_>], thing: usize, relation: Relation, anchors: &[usize]) -> f64 {
-    let here = along(&things[thing]);
-    let first = anchors.partition_point(|&anchor| along(&things[anchor]) < here - FAR);
+fn beside(things: &[MappedThing<'_>], thing: usize, relation: Relation, anchors: &[Anchor]) -> f64 {
+    let [x, y] = Anchor::of(things, thing).plan;
+    let first = anchors.partition_point(|anchor| anchor.plan[0] < x - FAR);
     anchors[first..]
         .iter()
-        .take_while(|&&anchor| along(&things[anchor]) <= here + FAR)
-        .filter(|&&anchor| anchor != thing)
-        .map(|&anchor| relation_fit(relation, &things[thing], &things[anchor]))
+        .take_while(|anchor| anchor.plan[0] <= x + FAR)
+        .filter(|anchor| (anchor.plan[1] - y).abs() <= FAR && anchor.thing != thing)
+        .map(|anchor| relation_fit(relation, &things[thing], &things[anchor.thing]))
         .fold(0.0, f64::max)
 }
 

@@ -35,9 +35,8 @@ proptest! {
     ) {
         let ids: Vec<_> = (0..positions.len()).map(|place| id(&place.to_string())).collect();
         let things: Vec<MappedThing<'_>> = ids.iter().zip(positions).map(|(id, position)| mapped(id, position)).collect();
-        let mut anchors: Vec<usize> = (1..things.len()).collect();
-        anchors.sort_by(|&left, &right| along(&things[left]).total_cmp(&along(&things[right])));
-        let place = Place::Beside { relation, anchors: anchors.clone() };
+        let anchors: Vec<usize> = (1..things.len()).collect();
+        let place = Place::beside(&things, relation, anchors.clone());
         for thing in 0..things.len() {
             let every = anchors
                 .iter()
