@@ -126,10 +126,14 @@ pub struct Steps<'a> {
 const TELLS_USAGE: &str = "get_usage_summary";
 const TELLS_BACKGROUND: &str = "list_users";
 
+/// The tools that tell of a thing's surroundings (the paper's LLM-INFER has these two and that of the usage).
+const TELLS_SURROUNDINGS: [&str; 2] = ["nearby_objects", "similar_objects"];
+
 impl<'a> Steps<'a> {
     /// Steps that cost nothing yet. What is withheld is withheld from LLM-INFER alone: a question may still name a
     /// role, and an answer that does can still be read. Where scores are fused, the model is not offered what the
-    /// evidence model weighs, because it would count twice, nor what the task tells already.
+    /// evidence model weighs, because it would count twice, nor what the task tells already. No tool of the server that
+    /// judges by itself, such as `whose_is`, is offered: the model would repeat its judgement, and learn what is withheld.
     pub fn new(
         model: &'a dyn ChatModel,
         server: &'a ToolServer,
@@ -142,7 +146,7 @@ impl<'a> Steps<'a> {
             (ContextSource::Given, _) => false,
             (_, TELLS_USAGE) => !fused && !withheld.contains(&Withheld::Usage),
             (_, TELLS_BACKGROUND) => !fused && !withheld.contains(&Withheld::Background),
-            _ => true,
+            (_, name) => TELLS_SURROUNDINGS.contains(&name),
         };
         let mut household = roster.users();
         if withheld.contains(&Withheld::Background) {

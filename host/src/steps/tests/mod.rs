@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 use async_trait::async_trait;
 use coin_schemas::household::ObjectId;
+use rstest::rstest;
 use serde_json::json;
 
 mod rendered;
@@ -238,12 +239,8 @@ async fn a_model_whose_scores_are_fused_sees_neither_usage_nor_owners() {
     let serde_json::Value::Object(known) = known else { panic!() };
     home.server.call_raw("record_answer", known).await.unwrap();
     let looks = |tool: &str| calls(tool, json!({"object_id": "3"}));
-    let model = Scripted::new([
-        looks("get_usage_summary"),
-        looks("nearby_objects"),
-        calls("list_objects", json!({})),
-        says(SCORES),
-    ]);
+    let model =
+        Scripted::new([looks("get_usage_summary"), looks("nearby_objects"), looks("whose_is"), says(SCORES)]);
     let scoring = Scoring { estimator: Estimator::Fused, ..Scoring::default() };
     let steps = Steps::new(&model, &home.server, &home.roster, &BTreeSet::new(), scoring);
     let step = steps.infer(&task(&home, "3")).await;
@@ -256,7 +253,26 @@ async fn a_model_whose_scores_are_fused_sees_neither_usage_nor_owners() {
         results[1].0,
         @r#"{"object":{"id":"3","name":"Marker","position":[10.7,2.1,0.8]},"nearby_objects":[{"id":"2","name":"Mug","distance":0.3611,"weight":0.7704}]}"#
     );
-    assert!(!results[2].0.contains("Tom") && results[2].0.contains("Mug"), "{}", results[2].0);
+    assert_eq!(results[2].0, "there is no tool \"whose_is\"; the tools are nearby_objects, similar_objects");
+}
+
+/// A tool that judges by itself would tell what is withheld, and let the model repeat its judgement.
+#[rstest]
+#[case(&[], &["get_usage_summary", "list_users", "nearby_objects", "similar_objects"])]
+#[case(&[Withheld::Usage], &["list_users", "nearby_objects", "similar_objects"])]
+#[case(&[Withheld::Usage, Withheld::Background], &["nearby_objects", "similar_objects"])]
+#[tokio::test]
+async fn a_model_is_offered_what_tells_of_a_thing_and_nothing_that_judges(
+    #[case] withheld: &[Withheld],
+    #[case] offered: &[&str],
+) {
+    let home = home().await;
+    let withheld = withheld.iter().copied().collect();
+    let model = Scripted::new([says(SCORES)]);
+    let steps = Steps::new(&model, &home.server, &home.roster, &withheld, Scoring::default());
+    let mut tools: Vec<&str> = steps.tools.iter().map(|tool| tool.name.as_str()).collect();
+    tools.sort_unstable();
+    assert_eq!(tools, offered);
 }
 
 #[tokio::test]
