@@ -153,6 +153,14 @@ async def record_usage(trial: Trial) -> None:
     assert (await trial.done("record_usage", captions=captions[:1]))["duplicates"] == 1
 
 
+async def observe_objects(trial: Trial) -> None:
+    there = (await trial.done("list_objects"))["objects"][0]
+    seen = {"class": there["name"], "position": there["position"], "radius": 0.1, "seen_at": "2025-01-19T19:00:00"}
+    result = await trial.done("observe_objects", observations=[seen, seen | {"radius": -1.0}])
+    assert [(one["object_id"], one["new"]) for one in result["results"]] == [(there["id"], False)], result
+    assert [one["index"] for one in result["rejected"]] == [1], result
+
+
 async def add_user(trial: Trial) -> None:
     users = (await trial.done("add_user", name="Ann", role="grandmother"))["users"]
     assert {user["name"] for user in users} == {*PEOPLE, "Ann"}, users
@@ -216,6 +224,7 @@ TOOLS = {
         record_answer,
         retract_answer,
         record_usage,
+        observe_objects,
         add_user,
     )
 }

@@ -6,17 +6,19 @@ use super::SemanticMap;
 use super::detection::Seen;
 use super::entry::{Entry, EntryId};
 use super::gaussian::{Gaussian, jeffreys};
+use super::kind::is_same_kind;
 use super::parameters::MapParameters;
 use crate::assignment::least_cost;
 
 /// Whether an entry may be what a sighting shows, as far as class and appearance tell.
 ///
 /// Appearance decides where both are known: it can tell a red cup from a blue one that stood there before, and a mug
-/// from what the detector calls it this time. Else the class decides: any class that the thing was given before.
+/// from what the detector calls it this time. Else the class decides: any class that the thing was given before,
+/// however it is spelt.
 pub fn agrees(entry: &Entry, seen: &Seen, parameters: &MapParameters) -> bool {
     match (&entry.look, &seen.feature) {
         (Some(look), Some(feature)) => look.cosine(feature) >= parameters.same_look,
-        _ => entry.classes.contains_key(&seen.sighting.class),
+        _ => entry.classes.keys().any(|class| is_same_kind(class, &seen.sighting.class)),
     }
 }
 

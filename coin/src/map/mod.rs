@@ -35,6 +35,7 @@ pub mod entry;
 mod fragments;
 pub mod gaussian;
 mod grid;
+mod kind;
 pub mod look;
 pub mod moves;
 pub mod parameters;
@@ -50,6 +51,7 @@ use association::associate;
 use detection::{Refusal, Seen, Sighting, View, ViewId};
 use entry::{Entry, EntryId, SightingId};
 use grid::Grid;
+use kind::Kind;
 pub use moves::{Moved, PerhapsMoved};
 use parameters::MapParameters;
 pub use split::SplitError;
@@ -146,7 +148,7 @@ pub struct SemanticMap {
     parameters: MapParameters,
     grid: Grid,
     /// The entries that enough views have confirmed, by class.
-    confirmed: BTreeMap<ClassLabel, BTreeSet<EntryId>>,
+    confirmed: BTreeMap<Kind, BTreeSet<EntryId>>,
     /// The entries of the sightings that are of no view, so that one that is handed in again is known.
     viewless: BTreeMap<Moment, EntryId>,
     /// The entries that were made, changed or withdrawn since it was last asked.
@@ -320,7 +322,7 @@ impl SemanticMap {
         self.changed.insert(entry.id);
         self.grid.insert(entry.id, entry.place.position);
         if let (true, Some(class)) = (self.is_confirmed(&entry), entry.class()) {
-            self.confirmed.entry(class.clone()).or_default().insert(entry.id);
+            self.confirmed.entry(Kind::of(class)).or_default().insert(entry.id);
         }
         self.state.entries.insert(entry.id, entry);
     }
@@ -330,7 +332,7 @@ impl SemanticMap {
         let entry = self.state.entries.remove(&id)?;
         self.changed.insert(id);
         self.grid.remove(id, entry.place.position);
-        if let Some(of_class) = entry.class().and_then(|class| self.confirmed.get_mut(class)) {
+        if let Some(of_class) = entry.class().and_then(|class| self.confirmed.get_mut(&Kind::of(class))) {
             of_class.remove(&id);
         }
         Some(entry)

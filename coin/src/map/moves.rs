@@ -12,6 +12,7 @@ use jiff::civil::DateTime;
 
 use super::detection::{Sighting, View};
 use super::entry::{Entry, EntryId, SightingId};
+use super::kind::Kind;
 use super::{Change, SemanticMap};
 
 /// A thing that moved and kept its id.
@@ -122,17 +123,16 @@ impl SemanticMap {
     }
 
     /// The entries about which the news may decide: those just confirmed, those that came after something that is now
-    /// gone, and those that waited for one of the classes seen.
+    /// gone, and those that waited for a thing of a class that was seen.
     fn to_decide(&self, news: &News) -> BTreeSet<EntryId> {
         let entry = |id: &EntryId| self.state.entries.get(id);
         let mut newcomers = news.confirmed.clone();
         for gone in news.gone.iter().filter_map(entry).filter(|gone| self.is_confirmed(gone)) {
             newcomers.extend(self.after(gone).map(|newcomer| newcomer.id));
         }
-        let classes: BTreeSet<_> =
-            news.seen.union(&news.gone).filter_map(entry).filter_map(Entry::class).collect();
-        let waits =
-            |id: &&EntryId| entry(id).and_then(Entry::class).is_some_and(|class| classes.contains(class));
+        let kind = |entry: &Entry| entry.class().map(Kind::of);
+        let kinds: BTreeSet<Kind> = news.seen.union(&news.gone).filter_map(entry).filter_map(kind).collect();
+        let waits = |id: &&EntryId| entry(id).and_then(kind).is_some_and(|kind| kinds.contains(&kind));
         if !self.state.undecided.is_empty() {
             newcomers.extend(self.state.undecided.iter().filter(waits));
         }
@@ -168,7 +168,7 @@ impl SemanticMap {
     }
 
     fn of_class(&self, entry: &Entry) -> impl Iterator<Item = &Entry> {
-        let ids = entry.class().and_then(|class| self.confirmed.get(class));
+        let ids = entry.class().and_then(|class| self.confirmed.get(&Kind::of(class)));
         ids.into_iter().flatten().filter_map(|id| self.state.entries.get(id))
     }
 

@@ -168,3 +168,16 @@ proptest! {
         prop_assert_eq!(&again.grid, &map.grid);
     }
 }
+
+#[test]
+fn another_spelling_of_the_class_names_the_same_thing() {
+    let mut map = map();
+    let mut seen = |minute, name| {
+        let detection = Detection { class: class(name), ..cup([0.0; 3]) };
+        ids(&map.observe(&view(minute, vec![detection])).outcomes)
+    };
+    for (minute, name) in [(0, "coffee mug"), (1, "Coffee Mug"), (2, "coffee_mug")] {
+        assert_eq!(seen(minute, name), [Some(0)], "{name}");
+    }
+    assert_eq!(seen(3, "coffee cup"), [Some(1)]);
+}
