@@ -23,8 +23,8 @@ Examples:
       In a home that is only looked at: nothing is kept.
   host ask 'whose mug is this?' --db home.db --json
       The whole result of find_object, and it alone, on standard output.
-  OPENAI_BASE_URL=http://127.0.0.1:7997 host ask 'the striped one' --encoder openai:clip --db home.db
-      A thing by its looks: its label need not say that it is striped.
+  host ask 'the striped mug' --encoder openai:clip --db home.db
+      By its looks as well: no label need say that it is striped.
 
 Exit status: 0 the thing is found; 1 failed; 2 wrong use, a refused file or an unknown speaker;
 3 no thing is found: a question has to come first, or nothing is handed out.";
@@ -35,7 +35,7 @@ Exit status: 0 the thing is found; 1 failed; 2 wrong use, a refused file or an u
 pub struct AskArguments {
     /// What the person says
     pub words: String,
-    /// The member of the household who says it; without, \"my\" is nobody's
+    /// The member of the household who says it; without, "my" is nobody's
     #[arg(long, value_name = "NAME")]
     pub speaker: Option<String>,
     /// The home's database; it is only read

@@ -77,6 +77,13 @@ fn an_episode_will_do() {
 }
 
 #[test]
+fn the_help_says_it_in_plain_characters() {
+    let help = Program::new("host").args(["ask", "--help"]).run().expect_code(0).stdout;
+    assert!(help.contains("without, \"my\" is nobody's") && help.contains("Exit status: 0"), "{help}");
+    assert!(!help.contains('\\'), "{help}");
+}
+
+#[test]
 fn wrong_use_is_refused() {
     let home = told();
     ask(&home, &["my mug", "--speaker", "Bobby"])
