@@ -21,11 +21,12 @@ DECIMALS = 2
 INTRODUCTION = f"""\
 # A conversation
 
-Bob speaks with an assistant that has `coin-server` plugged in, in the home of `fixtures/episodes/small-house`. Requests,
-results and the form are real: `clients/run conversation` holds this conversation through FastMCP's client, over
-standard input and output in revision {Era.MODERN.version} of the protocol, and writes it down; `--check` holds it again and
-compares. Results are shortened by rule: numbers to {DECIMALS} decimals, no positions, nothing that is empty. A language
-model would find its own words. Here the assistant is a script, which says what the tools gave it to say.
+Bob speaks with an assistant that has `coin-server` plugged in, in the home of `fixtures/episodes/small-house` as it was
+after two days. Requests, results and the form are real: `clients/run conversation` holds this conversation through
+FastMCP's client, over standard input and output in revision {Era.MODERN.version} of the protocol, and writes it down;
+`--check` holds it again and compares. Results are shortened by rule: numbers to {DECIMALS} decimals, no positions,
+nothing that is empty. A language model would find its own words. Here the assistant is a script, which says what the
+tools gave it to say.
 """
 
 
@@ -100,20 +101,20 @@ async def held(database: Path) -> str:
     transcript = Transcript()
     async with connect(Stdio(database), Era.MODERN) as client:
         transcript.heading("The assistant looks, is unsure and asks")
-        transcript.says("Bob", "Whose is the phone charger on the desk in the study?")
-        found = await transcript.calls(client, "list_objects", **{"class": "phone charger"})
+        transcript.says("Bob", "Whose is the camera?")
+        found = await transcript.calls(client, "list_objects", **{"class": "camera"})
         thing = found["objects"][0]["id"]
         judgement = await transcript.calls(client, "whose_is", object_id=thing)
         assert not judgement["settled"], "the assistant must have a reason to ask"
         transcript.says("Assistant", f"{judgement['explanation']} That is not sure enough to go by, so I had better ask.")
-        client.person.content = {"owner": "Mary", "in_your_words": "It's hers, Tom and I only borrow it."}
+        client.person.content = {"owner": "Bob", "in_your_words": "It's mine, Mary and Tom only borrow it."}
         answer = await transcript.calls(client, "ask_owner", object_id=thing)
         assert answer["status"] == "answered", answer
         transcript.says("Assistant", "Thank you. I will remember that.")
     async with connect(Stdio(database), Era.MODERN) as client:
         transcript.heading("Another day, in another conversation")
-        transcript.says("Tom", "Can I take the phone charger with me?")
-        await transcript.calls(client, "list_objects", **{"class": "phone charger"})
+        transcript.says("Tom", "Can I take the camera with me?")
+        await transcript.calls(client, "list_objects", **{"class": "camera"})
         judgement = await transcript.calls(client, "whose_is", object_id=thing)
         assert judgement["settled"] and judgement["source"] == "answer", judgement
         transcript.says("Assistant", f"Better ask its owner first. {judgement['explanation']}")
@@ -125,7 +126,7 @@ def main() -> int:
     arguments.add_argument("--check", action="store_true", help="compare with the file instead of writing it")
     given = arguments.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        text = asyncio.run(held(homes.small_house(Path(folder))))
+        text = asyncio.run(held(homes.two_days_in(Path(folder))))
     if not given.check:
         DOCUMENT.write_text(text)
         return 0

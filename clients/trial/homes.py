@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +13,8 @@ from trial.places import SMALL_HOUSE, program
 
 # More than a page of the list of resources holds.
 CROWD = 230
+
+TWO_DAYS_IN = "2025-01-15T00:00:00"
 
 
 def imported(episode: Path, database: Path) -> Path:
@@ -24,6 +27,28 @@ def imported(episode: Path, database: Path) -> Path:
 def small_house(folder: Path) -> Path:
     """A family's home, as at the end of a week of captions. Every call makes a new one."""
     return imported(SMALL_HOUSE, folder / f"small-house-{len(list(folder.iterdir()))}.db")
+
+
+def two_days_in(folder: Path) -> Path:
+    """The same home as it was two days into the week, when some things were still worth a question."""
+    episode = json.loads((SMALL_HOUSE / "episode.json").read_text()) | {"now": TWO_DAYS_IN}
+    del episode["train_until"], episode["truth"]
+    seen = [line for line in captions_of(episode) if as_time(json.loads(line)["caption"]) < TWO_DAYS_IN]
+    early = folder / f"two-days-in-{len(list(folder.iterdir()))}"
+    early.mkdir()
+    (early / "episode.json").write_text(json.dumps(episode))
+    (early / episode["captions"]).write_text("\n".join(seen))
+    shutil.copy(SMALL_HOUSE / episode["embeddings"], early)
+    return imported(early, early.with_suffix(".db"))
+
+
+def captions_of(episode: dict) -> list[str]:
+    return (SMALL_HOUSE / episode["captions"]).read_text().splitlines()
+
+
+def as_time(caption: str) -> str:
+    """When a caption was taken, such as 2025-01-13T06:14."""
+    return "T".join(caption.split(" ", 2)[:2])
 
 
 def crowded_home(folder: Path) -> Path:

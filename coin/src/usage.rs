@@ -136,16 +136,22 @@ pub fn days_since(last_seconds: i64, as_of_seconds: i64) -> f64 {
     ((seconds + half) / TENTH_OF_A_DAY) as f64 / 10.0
 }
 
+/// Who began each session, in order of time. Events in time order.
+pub fn session_order(events: &[UsageEvent]) -> Vec<UserIndex> {
+    let mut sessions = Sessions::default();
+    let attributed = events.iter().filter_map(|event| Some((event.actor?, event.at_seconds)));
+    attributed
+        .filter(|&(user, at_seconds)| sessions.begins_with(user, at_seconds))
+        .map(|(user, _)| user)
+        .collect()
+}
+
 /// c_u: the number of sessions of each of `members`, in the order of the roster. Events in time order; events
 /// of users beyond `members` are counted for nobody.
 pub fn session_counts(events: &[UsageEvent], members: usize) -> Vec<u64> {
     let mut counts = vec![0; members];
-    let mut sessions = Sessions::default();
-    for event in events {
-        if let Some(user) = event.actor
-            && sessions.begins_with(user, event.at_seconds)
-            && let Some(count) = counts.get_mut(user.place())
-        {
+    for user in session_order(events) {
+        if let Some(count) = counts.get_mut(user.place()) {
             *count += 1;
         }
     }

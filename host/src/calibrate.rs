@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use coin::agent::{AgentSettings, Reinference};
 use coin::calibration::{
-    CalibrationError, CalibrationSample, EMBEDDED_MODEL, Levels, Provenance, Thresholds, calibrate,
+    CalibrationError, CalibrationSample, EMBEDDED_MODEL, EMBEDDED_SCORING, Levels, Provenance, Thresholds,
+    calibrate,
 };
 use coin::sharing::ShareThresholds;
 use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
@@ -137,7 +138,7 @@ fn in_words(scoring: &Scoring) -> String {
 /// language model words the questions.
 pub fn scored_by(model: &str, scoring: Scoring) -> (&str, Scoring) {
     match scoring.estimator {
-        Estimator::Evidence => (EMBEDDED_MODEL, Scoring::default()),
+        Estimator::Evidence => (EMBEDDED_MODEL, EMBEDDED_SCORING),
         Estimator::Model | Estimator::Fused => (model, scoring),
     }
 }

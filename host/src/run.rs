@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use coin::agent::{Agent, AgentSettings, Reinference};
-use coin::calibration::{EMBEDDED_MODEL, Thresholds, embedded_calibration, score_of};
+use coin::calibration::{EMBEDDED_MODEL, EMBEDDED_SCORING, Thresholds, embedded_calibration, score_of};
 use coin::dialogue::Reading;
 use coin::owners::OwnerSet;
 use coin::roster::RosterError;
@@ -98,11 +98,13 @@ pub struct RunSettings {
     pub evidence: EvidenceKept,
 }
 
-/// How scores are made where nobody says otherwise: a language model's are fused with the evidence, and the embedded
-/// model is the evidence model itself.
+/// How scores are made where nobody says otherwise: a language model's are fused with the evidence; without one the
+/// evidence speaks alone.
 pub fn default_scoring(model: &str) -> Scoring {
-    let estimator = if model == EMBEDDED_MODEL { Estimator::Model } else { Estimator::Fused };
-    Scoring { estimator, ..Scoring::default() }
+    match model {
+        EMBEDDED_MODEL => EMBEDDED_SCORING,
+        _ => Scoring { estimator: Estimator::Fused, ..Scoring::default() },
+    }
 }
 
 /// Whether a run keeps what a page shows of each thing.
@@ -384,14 +386,19 @@ pub(crate) async fn drive(
             answered.remove(object);
         }
     }
-    let Course { settings, withheld, scoring, concurrency, journal, stop, .. } = course;
+    let Course { mut settings, withheld, scoring, concurrency, journal, stop, .. } = course;
     let reinference = settings.reinference;
+    // The evidence of one thing bears on every other one, and to weigh it again costs nothing.
+    if scoring.estimator != Estimator::Model {
+        settings.reinference = Reinference::EveryUnasked;
+    }
     let mut agent = Agent::new(settings, home.things.keys().cloned());
     for (object, owners) in answered {
         agent.remember_answer(&object, Reading { owners, outside_household: owners.is_empty() });
     }
     let steps = Steps::new(model, &home.server, &home.roster, &withheld, scoring);
-    let estimation = Estimation::new(&steps, withheld, home.episode.now, reinference).map_err(malformed)?;
+    let estimation =
+        Estimation::new(&steps, &home.things, withheld, home.episode.now, reinference).map_err(malformed)?;
     let (scored_by, _) = scored_by(model.name(), scoring);
     let driver = Driver {
         steps: &steps,
@@ -417,10 +424,8 @@ fn calibration_for(settings: &RunSettings, model: &str) -> Result<Option<Calibra
     let (model, scoring) = scored_by(model, settings.scoring);
     let Some(calibration) = &settings.calibration else {
         return match model {
-            EMBEDDED_MODEL if scoring.is_default() => {
-                embedded_calibration(score_of(settings.gate), &settings.withheld)
-                    .map_err(CalibrationFileError::BuiltIn)
-            }
+            EMBEDDED_MODEL => embedded_calibration(scoring, score_of(settings.gate), &settings.withheld)
+                .map_err(CalibrationFileError::BuiltIn),
             _ => Ok(None),
         };
     };

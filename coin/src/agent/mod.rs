@@ -22,6 +22,7 @@ pub use state::{Known, KnownSource, ObjectState};
 use crate::calibration::Thresholds;
 use crate::dialogue::Reading;
 use crate::gate::{Candidate, compare_ids, first_to_ask, wants_to_ask};
+use crate::owners::OwnerSet;
 use crate::sharing::ShareThresholds;
 
 /// BUILD-KNOWN: an inferred owner set counts as known from this probability on. Less would feed guesses back as
@@ -102,6 +103,12 @@ impl Agent {
     /// What is believed of a thing.
     pub fn object(&self, object: &ObjectId) -> Option<&ObjectState> {
         self.objects.get(object)
+    }
+
+    /// Whom people named as owners so far, by thing.
+    pub fn answers(&self) -> BTreeMap<ObjectId, OwnerSet> {
+        let answered = self.objects.iter().filter_map(|(object, state)| Some((object, state.answer()?)));
+        answered.map(|(object, reading)| (object.clone(), reading.owners)).collect()
     }
 
     /// The number of questions that were put so far.

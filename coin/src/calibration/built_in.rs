@@ -3,28 +3,56 @@
 use std::collections::BTreeSet;
 
 use coin_schemas::calibration::{Calibration, NonconformityScore};
-use coin_schemas::report::{Gate, Withheld};
+use coin_schemas::report::{ContextSource, Estimator, Gate, Scoring, Withheld};
 
-/// The name of the model that needs no service: the evidence model behind the chat-model interface.
+/// The name of the model that needs no service: the evidence model.
 pub const EMBEDDED_MODEL: &str = "embedded";
 
-/// What is withheld, the score of prediction sets over members, and the file that was made so.
-const FILES: [(&[Withheld], NonconformityScore, &str); 4] = [
-    (&[], NonconformityScore::AllOwners, include_str!("../../../fixtures/calibrations/embedded.json")),
+/// How scores are made where there is no language model: the evidence of the whole home speaks alone.
+pub const EMBEDDED_SCORING: Scoring =
+    Scoring { estimator: Estimator::Evidence, context: ContextSource::Tools, batch: 1 };
+
+/// The embedded model behind the chat-model interface, which judges each thing by itself as a language model would, with
+/// the bare formula.
+const BY_TOOL_CALLS: Scoring = Scoring { estimator: Estimator::Model, ..EMBEDDED_SCORING };
+
+/// How the scores were made, what was withheld, the score of prediction sets over members, and the file of it.
+const FILES: [(Scoring, &[Withheld], NonconformityScore, &str); 6] = [
     (
+        EMBEDDED_SCORING,
+        &[],
+        NonconformityScore::AllOwners,
+        include_str!("../../../fixtures/calibrations/embedded.json"),
+    ),
+    (
+        EMBEDDED_SCORING,
         &[],
         NonconformityScore::AnyOwner,
         include_str!("../../../fixtures/calibrations/embedded-any-owner.json"),
     ),
     (
+        EMBEDDED_SCORING,
         &[Withheld::Background],
         NonconformityScore::AllOwners,
         include_str!("../../../fixtures/calibrations/embedded-without-background.json"),
     ),
     (
+        EMBEDDED_SCORING,
         &[Withheld::Usage],
         NonconformityScore::AllOwners,
         include_str!("../../../fixtures/calibrations/embedded-without-usage.json"),
+    ),
+    (
+        BY_TOOL_CALLS,
+        &[],
+        NonconformityScore::AllOwners,
+        include_str!("../../../fixtures/calibrations/embedded-by-tool-calls.json"),
+    ),
+    (
+        BY_TOOL_CALLS,
+        &[],
+        NonconformityScore::AnyOwner,
+        include_str!("../../../fixtures/calibrations/embedded-by-tool-calls-any-owner.json"),
     ),
 ];
 
@@ -37,18 +65,21 @@ pub fn score_of(gate: Gate) -> NonconformityScore {
     }
 }
 
-/// The calibration of the embedded model that was made with this score and from a model that was told as much; `None`
-/// where the program carries none.
+/// The calibration of the embedded model for scores that are made so, with this score of prediction sets and from a model
+/// that was told as much; `None` where the program carries none.
 ///
 /// # Errors
 /// If the file that was compiled in is no calibration.
 pub fn embedded_calibration(
+    scoring: Scoring,
     score: NonconformityScore,
     withheld: &BTreeSet<Withheld>,
 ) -> Result<Option<Calibration>, serde_json::Error> {
     FILES
         .iter()
-        .find(|(told_without, made_with, _)| *made_with == score && withheld.iter().eq(told_without.iter()))
+        .find(|(made_so, told_without, made_with, _)| {
+            (*made_so, *made_with) == (scoring, score) && withheld.iter().eq(told_without.iter())
+        })
         .map(|(.., text)| serde_json::from_str(text))
         .transpose()
 }

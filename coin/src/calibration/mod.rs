@@ -13,7 +13,7 @@ use crate::conformal::risk::{Outcome, RiskSample, risk_threshold};
 use crate::conformal::{Level, label_set, split};
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::sharing::{ShareThresholds, detect_share};
-pub use built_in::{EMBEDDED_MODEL, embedded_calibration, score_of};
+pub use built_in::{EMBEDDED_MODEL, EMBEDDED_SCORING, embedded_calibration, score_of};
 
 /// Without a calibration a thing is settled where its best owner set has at least this probability.
 pub const UNCALIBRATED_CONFIDENCE: f64 = 0.95;
@@ -215,7 +215,8 @@ impl Thresholds {
     pub fn for_model(model: Option<&str>) -> Self {
         match model {
             Some(EMBEDDED_MODEL) => {
-                match embedded_calibration(NonconformityScore::AllOwners, &BTreeSet::new()) {
+                match embedded_calibration(EMBEDDED_SCORING, NonconformityScore::AllOwners, &BTreeSet::new())
+                {
                     Ok(Some(calibration)) => Self::from(&calibration),
                     Ok(None) | Err(_) => Self::Uncalibrated,
                 }

@@ -149,7 +149,9 @@ mod embedded {
     #[test]
     fn the_built_in_calibration_is_one() {
         let calibration =
-            embedded_calibration(NonconformityScore::AllOwners, &BTreeSet::new()).unwrap().unwrap();
+            embedded_calibration(EMBEDDED_SCORING, NonconformityScore::AllOwners, &BTreeSet::new())
+                .unwrap()
+                .unwrap();
         assert_eq!(calibration.model, EMBEDDED_MODEL);
         for value in [calibration.alpha, calibration.alpha_cp, calibration.risk] {
             assert_eq!(level(value).value(), value);

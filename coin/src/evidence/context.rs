@@ -1,13 +1,14 @@
 //! From what the tools tell of a thing to the numbers that the evidence model weighs.
 
-use coin_schemas::household::{ClassLabel, Source};
+use std::collections::BTreeMap;
+
+use coin_schemas::household::{ClassLabel, ObjectId, Source};
 use coin_schemas::model::GivenContext;
 use coin_schemas::tools::{KnownOwnership, display_name};
 
-use super::{
-    EvidenceParameters, KnownRelative, Opinion, Relation, least_confidence, likeness_counts, posterior,
-};
-use crate::owners::OwnerSetDistribution;
+use super::home::SeenThing;
+use super::{EvidenceParameters, KnownRelative, Opinion, Relation, likeness_counts, posterior};
+use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::{Roster, RosterError};
 
 /// The sessions of every member with a thing, and the things with answered owners that bear on it.
@@ -52,9 +53,32 @@ impl WeighedContext {
     pub fn posterior(&self, opinion: Opinion<'_>, parameters: &EvidenceParameters) -> OwnerSetDistribution {
         posterior(&self.sessions, opinion, &self.relatives, parameters)
     }
+}
 
-    /// The least probability that the best owner set can be left with: see [`least_confidence`].
-    pub fn least_confidence(&self, parameters: &EvidenceParameters) -> f64 {
-        least_confidence(&self.sessions, &self.relatives, parameters)
+impl SeenThing {
+    /// What a context tells of a thing of this class in a home whose things stand at these places. What lies near or looks
+    /// alike and has no place there is passed over, and so is whose it is: that is told of every thing for itself.
+    ///
+    /// # Errors
+    /// If the context names people who are not of the household.
+    pub fn in_context(
+        roster: &Roster,
+        class: &ClassLabel,
+        context: &GivenContext,
+        places: &BTreeMap<ObjectId, usize>,
+    ) -> Result<Self, RosterError> {
+        let users = context.usage.iter().flat_map(|summary| &summary.session_order);
+        let sessions = users.map(|user| roster.index_of(user.as_str())).collect::<Result<_, _>>()?;
+        let near = context.nearby_objects.iter().map(|near| (&near.id, near.weight));
+        let alike = context.similar_objects.iter().map(|alike| (&alike.id, alike.similarity));
+        let placed = |(id, number): (&ObjectId, f64)| Some((*places.get(id)?, number));
+        Ok(Self {
+            class: display_name(class),
+            sessions,
+            near: near.filter_map(placed).collect(),
+            alike: alike.filter_map(placed).collect(),
+            candidates: roster.everyone(),
+            latecomers: OwnerSet::EMPTY,
+        })
     }
 }

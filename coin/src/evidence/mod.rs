@@ -1,24 +1,36 @@
-//! The evidence model: how probable every owner set is, given who used a thing in how many sessions and whose
-//! the things around it are.
+//! The evidence model: how probable every owner set is, given who used a thing in which sessions and whose the things
+//! around it are.
 //!
-//! A session is one decision to use a thing. An owner set S of k of n members explains the session counts c by a
-//! borrow rate (the share of sessions of non-owners, integrated out under a Beta prior) and an even split among
-//! the owners (a Dirichlet–multinomial). Three terms of the prior look elsewhere: how many owners things have, what
-//! common sense expects of the class, and the answered owners of near things and look-alikes.
+//! A session is one decision to use a thing. [`home`] judges all things of a home together, because what they have in
+//! common (how much is lent, how often sightings are mistaken, what looks tell) says much of each. [`posterior`] is the
+//! bare formula for one thing by itself: an owner set S of k of n members explains the session counts c by a borrow rate
+//! (the share of sessions of non-owners, integrated out under a Beta prior) and an even split among the owners (a
+//! Dirichlet–multinomial). In both the prior knows how many owners things have, what common sense expects of the class,
+//! and the answered owners of things around.
 
 mod context;
+pub mod home;
 mod newcomers;
+mod prior;
 
 use libm::{lgamma, log};
 
-use coin_schemas::household::Score;
-
 pub use context::WeighedContext;
-pub use newcomers::{Arrivals, judge};
+pub use newcomers::Arrivals;
+pub use prior::{Opinion, SizePrior};
 
-use crate::common_sense::Expectation;
-use crate::owners::{OwnerSet, OwnerSetDistribution, candidate_sets};
+use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::UserIndex;
+use prior::{Candidates, logarithms, with_relatives};
+
+/// Where the habits of a home come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HabitSource {
+    /// They are those that are usual.
+    Ordinary,
+    /// They are learnt from all things of the home and all answers about them.
+    Learnt,
+}
 
 /// The constants of the model. The defaults were fixed on generated development households before any household
 /// that judges them was looked at.
@@ -47,6 +59,15 @@ pub struct EvidenceParameters {
     /// person 2.7 times as likely before anybody used the thing, about what the file grants to a role that suits;
     /// three sessions of somebody else outweigh it. It was reasoned so and not fitted: no language model was heard.
     pub language_model: f64,
+    /// β of the law of turns among people who share a thing: who has used it less is the next one. 0 makes it chance.
+    pub turns: f64,
+    /// How probable it is that a thing had other owners in an earlier part of its history. 0 switches the term off.
+    pub change_of_hands: f64,
+    /// The exponent of what looks tell, once the home has shown how much that is; below 1, because look-alikes of one
+    /// brand are no independent witnesses. 0 switches the term off.
+    pub resemblance: f64,
+    /// Where the habits of the home come from.
+    pub habits: HabitSource,
 }
 
 impl Default for EvidenceParameters {
@@ -61,27 +82,11 @@ impl Default for EvidenceParameters {
             looks: 0.50,
             common_sense: 0.10,
             language_model: 0.25,
+            turns: 1.5,
+            change_of_hands: 0.04,
+            resemblance: 0.5,
+            habits: HabitSource::Learnt,
         }
-    }
-}
-
-/// What is thought of a thing's owners before anybody has used it, beside how many owners things have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Opinion<'a> {
-    /// Nothing is.
-    None,
-    /// What the file of classes expects in this household.
-    OfClass(&'a Expectation),
-    /// What a language model makes of the class, the people and the place: for every member the probability of being
-    /// an owner, in the order of the roster. It must not have seen the usage, which would count twice.
-    OfModel(&'a [Score]),
-    /// The surest opinion that a language model can have: nobody but these people.
-    Certain(OwnerSet),
-}
-
-impl<'a> From<Option<&'a Expectation>> for Opinion<'a> {
-    fn from(expectation: Option<&'a Expectation>) -> Self {
-        expectation.map_or(Self::None, Self::OfClass)
     }
 }
 
@@ -116,82 +121,17 @@ pub fn likeness_counts(class: &str, other_class: &str) -> bool {
 }
 
 impl EvidenceParameters {
+    /// How many owners things have, as far as a home has not shown it.
+    pub fn sizes(&self) -> SizePrior {
+        SizePrior { single: self.prior_single, everyone: self.prior_everyone }
+    }
+
     /// The probability that the thing has the relative's owners *because* of the relation.
     pub fn coupling(&self, relation: Relation) -> f64 {
         match relation {
             Relation::Near { weight } => self.place * weight,
             Relation::LooksAlike { similarity } => self.looks * similarity.max(0.0),
         }
-    }
-
-    /// π(S): by the number of owners, evenly within a number. The sizes between one and everyone share what is
-    /// left; where there is none between, one and everyone are scaled up to 1.
-    fn log_prior(&self, owners: usize, members: usize, sizes_between: usize, sets_of_size: f64) -> f64 {
-        let between = 1.0 - self.prior_single - self.prior_everyone;
-        let total = if members == 1 {
-            return 0.0;
-        } else if sizes_between == 0 {
-            self.prior_single + self.prior_everyone
-        } else {
-            1.0
-        };
-        let of_size = if owners == 1 {
-            self.prior_single
-        } else if owners == members {
-            self.prior_everyone
-        } else {
-            between / sizes_between as f64
-        };
-        log(of_size / total / sets_of_size)
-    }
-}
-
-/// What is expected of an owner set: by its size, and within a size in proportion to how well its members are
-/// suited together.
-fn expected(expectation: &Expectation, set: OwnerSet, sizes_between: usize, suited: &[f64]) -> f64 {
-    let members = expectation.suitability.len();
-    let between = 1.0 - expectation.single - expectation.everyone;
-    let of_size = match set.len() {
-        size if size == members => expectation.everyone,
-        1 => expectation.single,
-        _ => between / sizes_between as f64,
-    };
-    let total = match (members, sizes_between) {
-        (1, _) => return 1.0,
-        (_, 0) => expectation.single + expectation.everyone,
-        _ => 1.0,
-    };
-    of_size / total * suitability(expectation, set) / suited[set.len()]
-}
-
-fn suitability(expectation: &Expectation, set: OwnerSet) -> f64 {
-    set.iter().filter_map(|user| expectation.suitability.get(user.place())).product()
-}
-
-/// A language model's scores as weights of owner sets: `e(S) ∝ π(S) · ∏_{u∈S} s_u · ∏_{u∉S} (1−s_u)`. A model is told to
-/// give one half where nothing speaks for or against a member, so the scores are odds against that: one half for
-/// everybody says nothing.
-struct ModelOpinion<'a> {
-    scores: &'a [Score],
-    sum: f64,
-}
-
-impl<'a> ModelOpinion<'a> {
-    fn new(scores: &'a [Score], sets: &[OwnerSet], prior: impl Fn(OwnerSet) -> f64) -> Self {
-        let opinion = Self { scores, sum: 0.0 };
-        let sum = sets.iter().fold(0.0, |sum, &set| sum + opinion.of(set, prior(set)));
-        Self { sum, ..opinion }
-    }
-
-    /// e(S) before it is normalised.
-    fn of(&self, set: OwnerSet, prior: f64) -> f64 {
-        let odds = self.scores.iter().enumerate().map(|(place, score)| {
-            match UserIndex::new(place).is_some_and(|user| set.contains(user)) {
-                true => score.value(),
-                false => 1.0 - score.value(),
-            }
-        });
-        prior * odds.product::<f64>()
     }
 }
 
@@ -244,81 +184,18 @@ pub fn posterior(
     relatives: &[KnownRelative],
     parameters: &EvidenceParameters,
 ) -> OwnerSetDistribution {
-    let members = sessions.len();
-    let sets = candidate_sets(members);
-    let sets_of_size = |size: usize| sets.iter().filter(|set| set.len() == size).count() as f64;
-    let size_counts: Vec<f64> = (0..=members).map(sets_of_size).collect();
-    let sizes_between = (2..members).filter(|&size| size_counts[size] > 0.0).count();
-
-    let expectation = match opinion {
-        Opinion::OfClass(expectation) if expectation.suitability.len() == members => Some(expectation),
-        _ => None,
-    };
-    let mut suited = vec![0.0; members + 1];
-    for &set in &sets {
-        suited[set.len()] += expectation.map_or(0.0, |expectation| suitability(expectation, set));
-    }
-    let by_size =
-        |set: OwnerSet| parameters.log_prior(set.len(), members, sizes_between, size_counts[set.len()]);
-    let of_model = match opinion {
-        Opinion::OfModel(scores) if scores.len() == members && members > 1 => {
-            Some(ModelOpinion::new(scores, &sets, |set| libm::exp(by_size(set))))
-        }
-        _ => None,
-    }
-    .filter(|opinion| opinion.sum > 0.0);
-
-    let couplings: Vec<(OwnerSet, f64)> = relatives
-        .iter()
-        .filter(|relative| sets.contains(&relative.owners))
-        .map(|relative| (relative.owners, parameters.coupling(relative.relation)))
-        .collect();
-    let independent: f64 = couplings.iter().map(|&(_, coupling)| 1.0 - coupling).product();
-    let coupling_sum: f64 = couplings.iter().map(|&(_, coupling)| coupling).sum();
-
-    OwnerSetDistribution::from_log_weights(sets.iter().map(|&set| {
-        let by_size = by_size(set);
-        let mixed = |weight: f64, expected: f64| log((1.0 - weight) * libm::exp(by_size) + weight * expected);
-        let own = match (opinion, expectation, &of_model) {
-            (Opinion::Certain(owners), ..) => {
-                mixed(parameters.language_model, if set == owners { 1.0 } else { 0.0 })
-            }
-            (_, Some(expectation), _) => {
-                mixed(parameters.common_sense, expected(expectation, set, sizes_between, &suited))
-            }
-            (_, None, Some(opinion)) => {
-                mixed(parameters.language_model, opinion.of(set, libm::exp(by_size)) / opinion.sum)
-            }
-            (_, None, None) => by_size,
-        };
-        let shared: f64 =
-            couplings.iter().filter(|&&(owners, _)| owners == set).map(|&(_, coupling)| coupling).sum();
-        let prior = if coupling_sum > 0.0 {
-            log(independent * libm::exp(own) + (1.0 - independent) * shared / coupling_sum)
-        } else {
-            own
-        };
-        (set, prior + log_likelihood(sessions, set, parameters))
-    }))
-}
-
-/// The least probability that the best owner set can be left with by a language model, whatever it says: with the whole
-/// weight of an opinion on the rival that explains the usage best. 1 where there is no rival. Where this is high a model
-/// need not be asked, because its word can settle nothing.
-pub fn least_confidence(
-    sessions: &[u64],
-    relatives: &[KnownRelative],
-    parameters: &EvidenceParameters,
-) -> f64 {
-    let (best, confidence) = posterior(sessions, Opinion::None, relatives, parameters).best();
-    let likelihood = |set: &OwnerSet| log_likelihood(sessions, *set, parameters);
-    let rivals = candidate_sets(sessions.len()).into_iter().filter(|&set| set != best);
-    rivals
-        .max_by(|left, right| likelihood(left).total_cmp(&likelihood(right)))
-        .map_or(confidence, |rival| {
-            posterior(sessions, Opinion::Certain(rival), relatives, parameters).probability(best)
-        })
-        .min(confidence)
+    let candidates = Candidates::of((0..sessions.len()).filter_map(UserIndex::new).collect());
+    let couplings: Vec<(OwnerSet, f64)> =
+        relatives.iter().map(|relative| (relative.owners, parameters.coupling(relative.relation))).collect();
+    let mut prior = candidates.own(opinion, parameters.sizes(), parameters);
+    with_relatives(candidates.sets(), &mut prior, &couplings);
+    OwnerSetDistribution::from_log_weights(
+        candidates
+            .sets()
+            .iter()
+            .zip(logarithms(&prior))
+            .map(|(&set, prior)| (set, prior + log_likelihood(sessions, set, parameters))),
+    )
 }
 
 #[cfg(test)]

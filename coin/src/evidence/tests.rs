@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use rstest::rstest;
 
 use super::*;
+use crate::owners::candidate_sets;
 use crate::support::{any_order, any_set, moved, places, set, user};
 
 const EXACT: f64 = 1e-12;
@@ -393,20 +394,6 @@ mod opinion_of_a_model {
             let before = with(&sessions, &values).marginals(values.len())[0].value();
             let after = with(&sessions, &higher).marginals(values.len())[0].value();
             prop_assert!(after >= before - 1e-9, "{before} and {after}");
-        }
-    }
-
-    proptest! {
-        /// Whatever a model says, the best set keeps what was promised of it; and nearly no more can be promised.
-        #[test]
-        fn leaves_the_best_set_what_is_promised((sessions, values) in any_opinion()) {
-            let promised = least_confidence(&sessions, &[], &defaults());
-            let best = posterior(&sessions, Opinion::None, &[], &defaults()).best().0;
-            prop_assert!(with(&sessions, &values).probability(best) >= promised - EXACT);
-            let worst = candidate_sets(sessions.len()).into_iter().map(|certain| {
-                posterior(&sessions, Opinion::Certain(certain), &[], &defaults()).probability(best)
-            });
-            prop_assert!((worst.fold(1.0, f64::min) - promised).abs() < EXACT);
         }
     }
 

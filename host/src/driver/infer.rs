@@ -8,7 +8,7 @@ use futures::StreamExt;
 use tokio::sync::Semaphore;
 
 use super::{DriveError, Driver};
-use crate::estimation::Estimate;
+use crate::estimation::{Answers, Estimate};
 
 impl Driver<'_> {
     /// Has these things scored, several conversations at once. Results are taken in the order of the things, so that
@@ -17,6 +17,7 @@ impl Driver<'_> {
         &mut self,
         pass: usize,
         objects: Vec<ObjectId>,
+        answers: &Answers,
     ) -> Result<Vec<Event>, DriveError> {
         self.observer.observe(&LogEvent::InferenceStarted { pass, objects: objects.clone() })?;
         let mut events = Vec::new();
@@ -40,7 +41,7 @@ impl Driver<'_> {
                 async move {
                     // Permits come in order: where one is refused, an error that ends the run is on its way.
                     let Ok(_permit) = going_on.acquire().await else { return (things, Vec::new()) };
-                    let estimates = estimation.infer(&things.iter().collect::<Vec<_>>()).await;
+                    let estimates = estimation.infer(&things.iter().collect::<Vec<_>>(), answers).await;
                     if estimates.iter().any(|estimate| estimate.outcome.is_err()) {
                         going_on.close();
                     }

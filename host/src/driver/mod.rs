@@ -175,7 +175,8 @@ impl Run<'_> {
             for effect in effects {
                 match effect {
                     Effect::Infer { objects } => {
-                        events.extend(self.driver.infer(pass, objects).await?);
+                        let answers = self.agent.answers();
+                        events.extend(self.driver.infer(pass, objects, &answers).await?);
                         pass += 1;
                     }
                     Effect::Record { objects } => self.driver.record(&self.agent, &objects).await?,

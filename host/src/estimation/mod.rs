@@ -3,6 +3,7 @@
 //! A thing whose context did not change is not judged anew by a language model. Where the model fails on a thing, the
 //! evidence model stands in, and the belief says so.
 
+mod home;
 mod memory;
 #[cfg(test)]
 mod tests;
@@ -11,11 +12,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use coin::agent::{Inference, Parts};
 use coin::calibration::UNCALIBRATED_CONFIDENCE;
-use coin::common_sense::expect;
-use coin::evidence::{EvidenceParameters, Opinion, WeighedContext};
 use coin::owners::OwnerSetDistribution;
-use coin::roster::{Roster, RosterError};
-use coin_schemas::household::{ObjectId, Score};
+use coin::roster::RosterError;
+use coin_schemas::household::ObjectId;
 use coin_schemas::model::{GivenContext, Task, TaskObject, ThingInContext};
 use coin_schemas::report::{ContextSource, Estimator, Reinference, Withheld};
 use jiff::civil::DateTime;
@@ -24,7 +23,10 @@ use crate::client::ServerError;
 use crate::evidence::{context, related, surroundings};
 use crate::model::{ModelError, ToolArguments};
 use crate::steps::{CalledTool, InferStep, Scored, StepError, Steps};
+use home::SeenHome;
 use memory::{Basis, Memory};
+
+pub use home::Answers;
 
 /// How many captions of each person a model finds in the prompt, as many as it is shown by default when it asks.
 const EXAMPLES_IN_THE_PROMPT: u32 = 5;
@@ -32,9 +34,6 @@ const EXAMPLES_IN_THE_PROMPT: u32 = 5;
 /// A model is not asked about a thing whose best owner set keeps at least this probability whatever it says: even
 /// without a calibration nobody would be asked about it.
 const DECIDED: f64 = UNCALIBRATED_CONFIDENCE;
-
-/// The evidence model counts sessions and reads no captions.
-const NO_EXAMPLES: u32 = 0;
 
 /// What came of one thing.
 #[derive(Debug)]
@@ -49,31 +48,29 @@ pub struct Estimate {
 pub struct Estimation<'a> {
     steps: &'a Steps<'a>,
     withheld: BTreeSet<Withheld>,
-    /// The household as the evidence model is told of it.
-    told: Roster,
     as_of: DateTime,
-    parameters: EvidenceParameters,
+    home: SeenHome<'a>,
     memory: Memory,
 }
 
 impl<'a> Estimation<'a> {
-    /// Scores of a run in which these steps are taken, as of this moment. The paper's scheme of inferring every thing
-    /// again asks the model every time, so that its price can be told.
+    /// Scores of these things of a home, in a run in which these steps are taken, as of this moment. The paper's scheme of
+    /// inferring every thing again asks the model every time, so that its price can be told.
     ///
     /// # Errors
     /// If the household cannot be told without what is withheld, which is a fault of this program.
     pub fn new(
         steps: &'a Steps<'a>,
+        things: &'a BTreeMap<ObjectId, TaskObject>,
         withheld: BTreeSet<Withheld>,
         as_of: DateTime,
         reinference: Reinference,
     ) -> Result<Self, RosterError> {
         Ok(Self {
-            told: Roster::new(steps.household())?,
+            home: SeenHome::new(steps, things, withheld.clone(), as_of)?,
             steps,
             withheld,
             as_of,
-            parameters: EvidenceParameters::default(),
             memory: Memory::of(reinference),
         })
     }
@@ -90,66 +87,40 @@ impl<'a> Estimation<'a> {
         }
     }
 
-    /// Scores these things, of which there are at most [`Self::batch`], in the order given.
-    pub async fn infer(&self, things: &[&TaskObject]) -> Vec<Estimate> {
+    /// Scores these things, of which there are at most [`Self::batch`], in the order given, with the answers so far.
+    pub async fn infer(&self, things: &[&TaskObject], answers: &Answers) -> Vec<Estimate> {
         match (self.steps.scoring().estimator, self.steps.scoring().context) {
             (Estimator::Evidence, _) => {
                 let mut estimates = Vec::with_capacity(things.len());
                 for thing in things {
-                    estimates.push(self.by_evidence(thing).await.into());
+                    estimates.push(self.by_evidence(thing, answers).await.into());
                 }
                 estimates
             }
             (Estimator::Model, ContextSource::Tools) => {
                 let mut estimates = Vec::with_capacity(things.len());
                 for thing in things {
-                    estimates.push(self.by_model_with_tools(thing).await);
+                    estimates.push(self.by_model_with_tools(thing, answers).await);
                 }
                 estimates
             }
-            (Estimator::Model, ContextSource::Given) => self.by_model_with_context(things).await,
-            (Estimator::Fused, _) => self.fused(things).await,
+            (Estimator::Model, ContextSource::Given) => self.by_model_with_context(things, answers).await,
+            (Estimator::Fused, _) => self.fused(things, answers).await,
         }
     }
 
     /// The evidence model by itself, with the file of classes for common sense.
-    async fn by_evidence(&self, thing: &TaskObject) -> Result<Inference, StepError> {
-        let context = self.context(thing, NO_EXAMPLES).await?;
-        let distribution = self.weigh(thing, &context, None)?;
-        Ok(self.inference(distribution, &context))
+    async fn by_evidence(&self, thing: &TaskObject, answers: &Answers) -> Result<Inference, StepError> {
+        Ok(self.inference(self.home.by_evidence(&thing.id, answers).await?))
     }
 
     async fn context(&self, thing: &TaskObject, examples: u32) -> Result<GivenContext, ServerError> {
         context(self.steps.server(), &thing.id, self.as_of, &self.withheld, examples).await
     }
 
-    /// The posterior of the evidence, with a model's common sense in place of the file's where there is one.
-    fn weigh(
-        &self,
-        thing: &TaskObject,
-        context: &GivenContext,
-        opinion: Option<&[Score]>,
-    ) -> Result<OwnerSetDistribution, StepError> {
-        let expectation = expect(thing.class.as_str(), &self.told);
-        let opinion = match opinion {
-            Some(scores) => Opinion::OfModel(scores),
-            None => Opinion::from(expectation.as_ref()),
-        };
-        Ok(self.weighed(thing, context)?.posterior(opinion, &self.parameters))
-    }
-
-    fn weighed(&self, thing: &TaskObject, context: &GivenContext) -> Result<WeighedContext, StepError> {
-        WeighedContext::new(&self.told, &thing.class, context)
-            .map_err(|error| StepError::Unusable { reason: error.to_string() })
-    }
-
-    fn inference(&self, distribution: OwnerSetDistribution, context: &GivenContext) -> Inference {
-        Inference {
-            scores: distribution.marginals(self.told.len()),
-            distribution,
-            related: related(context),
-            ..Inference::default()
-        }
+    fn inference(&self, distribution: OwnerSetDistribution) -> Inference {
+        let scores = distribution.marginals(self.home.roster().len());
+        Inference { scores, distribution, ..Inference::default() }
     }
 
     fn task(&self, thing: &TaskObject, context: Option<GivenContext>) -> Task {
@@ -162,7 +133,7 @@ impl<'a> Estimation<'a> {
     }
 
     /// The paper's LLM-INFER: the model fetches the context and scores alone.
-    async fn by_model_with_tools(&self, thing: &TaskObject) -> Estimate {
+    async fn by_model_with_tools(&self, thing: &TaskObject, answers: &Answers) -> Estimate {
         match self.unchanged(thing).await {
             Ok(Some(inference)) => return Ok(inference).into(),
             Ok(None) => {}
@@ -175,7 +146,7 @@ impl<'a> Estimation<'a> {
                 self.memory.keep(&thing.id, Basis::Results(seen), &inference);
                 Ok(inference)
             }
-            Err(error) => self.stand_in(thing, error).await,
+            Err(error) => self.stand_in(thing, answers, error).await,
         };
         Estimate { called, outcome }
     }
@@ -198,7 +169,7 @@ impl<'a> Estimation<'a> {
     }
 
     /// The model finds the context in the prompt and scores alone.
-    async fn by_model_with_context(&self, things: &[&TaskObject]) -> Vec<Estimate> {
+    async fn by_model_with_context(&self, things: &[&TaskObject], answers: &Answers) -> Vec<Estimate> {
         let mut known = BTreeMap::new();
         let mut asked = Vec::new();
         for thing in things {
@@ -224,8 +195,8 @@ impl<'a> Estimation<'a> {
                     self.memory.keep(&object.id, Basis::Context(context), &inference);
                     Ok(inference)
                 }
-                Some(Err(error)) => self.stand_in(&object, error).await,
-                None => self.stand_in(&object, not_asked()).await,
+                Some(Err(error)) => self.stand_in(&object, answers, error).await,
+                None => self.stand_in(&object, answers, not_asked()).await,
             };
             known.insert(object.id, outcome);
         }
@@ -257,24 +228,15 @@ impl<'a> Estimation<'a> {
 
     /// The model's common sense, heard once for each thing, and the evidence as it is now, in one posterior. Where no
     /// opinion could unsettle what the evidence says the model is not asked.
-    async fn fused(&self, things: &[&TaskObject]) -> Vec<Estimate> {
+    async fn fused(&self, things: &[&TaskObject], answers: &Answers) -> Vec<Estimate> {
+        let (called, mut failures) = self.hear(things, answers).await;
         let mut known = BTreeMap::new();
-        let mut weighed: Vec<ThingInContext> = Vec::new();
         for thing in things {
-            match self.context(thing, NO_EXAMPLES).await {
-                Ok(context) => weighed.push(ThingInContext { object: (*thing).clone(), context }),
-                Err(error) => {
-                    known.insert(thing.id.clone(), Err(error.into()));
-                }
-            }
-        }
-        let (called, mut failures) = self.hear(&weighed).await;
-        for ThingInContext { object, context } in &weighed {
-            let outcome = match failures.remove(&object.id) {
-                Some(error) => self.stand_in(object, error).await,
-                None => self.fuse(object, context),
+            let outcome = match failures.remove(&thing.id) {
+                Some(error) => self.stand_in(thing, answers, error).await,
+                None => self.fuse(thing, answers).await,
             };
-            known.insert(object.id.clone(), outcome);
+            known.insert(thing.id.clone(), outcome);
         }
         in_order(things, known, called)
     }
@@ -283,31 +245,46 @@ impl<'a> Estimation<'a> {
     /// could unsettle. The tools that it called, and where it failed.
     async fn hear(
         &self,
-        things: &[ThingInContext],
+        things: &[&TaskObject],
+        answers: &Answers,
     ) -> (BTreeMap<ObjectId, Vec<CalledTool>>, BTreeMap<ObjectId, StepError>) {
-        let unheard = things.iter().filter(|thing| {
-            self.memory.opinion(&thing.object.id).is_none() && !self.is_decided(&thing.object, &thing.context)
-        });
-        let mut called = BTreeMap::new();
+        let (mut called, mut failures) = (BTreeMap::new(), BTreeMap::new());
+        let mut unheard: Vec<&TaskObject> = Vec::new();
+        for thing in things {
+            if self.memory.opinion(&thing.id).is_some() {
+                continue;
+            }
+            match self.home.least_confidence(&thing.id, answers).await {
+                Ok(confidence) if confidence >= DECIDED => {}
+                Ok(_) => unheard.push(thing),
+                Err(error) => {
+                    failures.insert(thing.id.clone(), error);
+                }
+            }
+        }
         let outcomes: BTreeMap<ObjectId, Result<Scored, StepError>> = match self.steps.scoring().context {
             ContextSource::Tools => {
                 let mut outcomes = BTreeMap::new();
-                for ThingInContext { object, .. } in unheard {
-                    let step = self.steps.infer(&self.task(object, None)).await;
-                    called.insert(object.id.clone(), step.called);
-                    outcomes.insert(object.id.clone(), step.outcome);
+                for thing in unheard {
+                    let step = self.steps.infer(&self.task(thing, None)).await;
+                    called.insert(thing.id.clone(), step.called);
+                    outcomes.insert(thing.id.clone(), step.outcome);
                 }
                 outcomes
             }
             ContextSource::Given => {
-                let told = |thing: &ThingInContext| ThingInContext {
-                    object: thing.object.clone(),
-                    context: surroundings(&thing.context),
-                };
-                self.ask_about(&unheard.map(told).collect::<Vec<_>>()).await
+                let mut told = Vec::new();
+                for thing in unheard {
+                    match surroundings(self.steps.server(), &thing.id).await {
+                        Ok(context) => told.push(ThingInContext { object: thing.clone(), context }),
+                        Err(error) => {
+                            failures.insert(thing.id.clone(), error.into());
+                        }
+                    }
+                }
+                self.ask_about(&told).await
             }
         };
-        let mut failures = BTreeMap::new();
         for (id, outcome) in outcomes {
             match outcome {
                 Ok(Scored { scores, remark, .. }) => self.memory.keep_opinion(&id, &scores, remark),
@@ -319,26 +296,28 @@ impl<'a> Estimation<'a> {
         (called, failures)
     }
 
-    /// Whether the evidence settles a thing whatever a model says. What cannot be told here fails where it is weighed.
-    fn is_decided(&self, thing: &TaskObject, context: &GivenContext) -> bool {
-        self.weighed(thing, context)
-            .is_ok_and(|weighed| weighed.least_confidence(&self.parameters) >= DECIDED)
-    }
-
-    fn fuse(&self, thing: &TaskObject, context: &GivenContext) -> Result<Inference, StepError> {
+    async fn fuse(&self, thing: &TaskObject, answers: &Answers) -> Result<Inference, StepError> {
         let (opinion, remark) = self.memory.opinion(&thing.id).unzip();
-        let fused = self.weigh(thing, context, opinion.as_deref())?;
-        let evidence = self.weighed(thing, context)?.posterior(Opinion::None, &self.parameters);
-        let parts = Parts { model: opinion, evidence: evidence.marginals(self.told.len()) };
-        Ok(Inference { parts: Some(parts), problem: remark.flatten(), ..self.inference(fused, context) })
+        let fused = match &opinion {
+            Some(scores) => self.home.with_opinion(&thing.id, answers, Some(scores)).await?,
+            None => self.home.by_evidence(&thing.id, answers).await?,
+        };
+        let evidence = self.home.with_opinion(&thing.id, answers, None).await?;
+        let parts = Parts { model: opinion, evidence: evidence.marginals(self.home.roster().len()) };
+        Ok(Inference { parts: Some(parts), problem: remark.flatten(), ..self.inference(fused) })
     }
 
     /// The evidence model speaks where the model failed, unless nothing can go on.
-    async fn stand_in(&self, thing: &TaskObject, error: StepError) -> Result<Inference, StepError> {
+    async fn stand_in(
+        &self,
+        thing: &TaskObject,
+        answers: &Answers,
+        error: StepError,
+    ) -> Result<Inference, StepError> {
         if error.ends_run() {
             return Err(error);
         }
-        let by_evidence = self.by_evidence(thing).await?;
+        let by_evidence = self.by_evidence(thing, answers).await?;
         let problem = match error {
             StepError::Model(ModelError::OutOfBudget { .. }) => {
                 format!("{error}; judged by the evidence alone")

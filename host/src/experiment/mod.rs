@@ -247,9 +247,8 @@ async fn calibrations(
     let mut calibrations = Calibrations::new();
     for kind in kinds {
         let calibration = match (settings.calibrate_on.is_empty(), model.name()) {
-            (true, EMBEDDED_MODEL) => {
-                embedded_calibration(kind.score, &kind.withheld).map_err(CalibrationFileError::BuiltIn)?
-            }
+            (true, EMBEDDED_MODEL) => embedded_calibration(kind.scoring, kind.score, &kind.withheld)
+                .map_err(CalibrationFileError::BuiltIn)?,
             (true, _) => None,
             (false, _) => {
                 progress.begin(settings.calibrate_on.len(), "homes calibrated on");

@@ -50,6 +50,16 @@ pub struct GetUsageSummary {
     #[serde(default = "default_max_examples")]
     #[schemars(range(min = 0, max = 50))]
     pub max_examples: u32,
+    /// How many sessions session_order lists.
+    #[serde(default, skip_serializing_if = "is_none_listed")]
+    #[schemars(range(min = 0, max = 1000))]
+    pub max_sessions: u32,
+}
+
+/// Lists that nobody asked for are left unsaid.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference over")]
+fn is_none_listed(max_sessions: &u32) -> bool {
+    *max_sessions == 0
 }
 
 /// Result of `get_usage_summary`.
@@ -66,6 +76,9 @@ pub struct UsageSummary {
     pub user_summary: Vec<UserUsage>,
     /// Events whose actor could not be told; they belong to nobody's count.
     pub unattributed_events: u64,
+    /// The users of the latest sessions, oldest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub session_order: Vec<UserName>,
 }
 
 /// How one person used a thing.

@@ -50,6 +50,8 @@ pub const MAX_WINDOW_DAYS: u32 = 36_500;
 pub const DEFAULT_MAX_EXAMPLES: u32 = 5;
 /// Largest `max_examples`; more would crowd out the conversation.
 pub const MAX_EXAMPLES: u32 = 50;
+/// Largest `max_sessions`.
+pub const MAX_SESSIONS: u32 = 1000;
 /// Default of `k`, the paper's K_near and K_sim.
 pub const DEFAULT_K: u32 = 5;
 /// Largest `k`.

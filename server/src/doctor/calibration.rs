@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use coin::calibration::embedded_calibration;
+use coin::calibration::{EMBEDDED_SCORING, embedded_calibration};
 use coin_schemas::calibration::NonconformityScore;
 use coin_schemas::doctor::{Finding, Level};
 
@@ -11,7 +11,7 @@ use super::{advice, finding};
 const SUBJECT: &str = "calibration";
 
 pub(super) fn examine() -> Finding {
-    match embedded_calibration(NonconformityScore::AllOwners, &BTreeSet::new()) {
+    match embedded_calibration(EMBEDDED_SCORING, NonconformityScore::AllOwners, &BTreeSet::new()) {
         Ok(Some(calibration)) => finding(
             Level::Ok,
             SUBJECT,

@@ -1,11 +1,10 @@
 //! Whose a thing is, with what is known of it, and without any language model.
 
 use coin::calibration::{Assessment, EMBEDDED_MODEL, Thresholds};
-use coin::captions::civil_seconds;
 use coin::dialogue::{
     Conclusion, Explained, Grounds, Reading, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };
-use coin::evidence::{Arrivals, EvidenceParameters, Relation, judge, likeness_counts};
+use coin::evidence::{EvidenceParameters, Relation, likeness_counts};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::roster::Roster;
 use coin::sharing::ShareThresholds;
@@ -18,6 +17,7 @@ use coin_schemas::tools::{
 };
 use jiff::civil::DateTime;
 
+use super::usage::Listed;
 use super::{LookAlikes, Scene, Window};
 use crate::store::{Inference, RecordedAnswer, StoreError, StoredObject};
 
@@ -107,7 +107,7 @@ impl Scene<'_> {
                 (scores, distribution, thresholds, Basis::Model { name: inference.model })
             }
             None => {
-                let distribution = self.weigh(object, &context, as_of)?;
+                let distribution = self.weigh(object, moment, as_of)?;
                 let scores = distribution.marginals(self.household.roster().len());
                 (scores, distribution, thresholds_of(Some(EMBEDDED_MODEL)), Basis::Evidence)
             }
@@ -137,6 +137,7 @@ impl Scene<'_> {
         &self,
     ) -> Result<impl Iterator<Item = Result<(&StoredObject, Judgement), StoreError>>, StoreError> {
         self.beliefs()?;
+        self.weigh_all()?;
         Ok(self.objects()?.iter().map(|object| {
             self.reader.go_on()?;
             Ok((object, self.judge(object, Moment::Present)?))
@@ -176,7 +177,7 @@ impl Scene<'_> {
             LookAlikes::NeverSeen | LookAlikes::NothingToCompare => Vec::new(),
         };
         let mut context = GivenContext {
-            usage: Some(self.usage(object, Window::usual(as_of), 0)?),
+            usage: Some(self.usage(object, Window::usual(as_of), Listed::default())?),
             nearby_objects: self.nearby(object, &Neighbourhood::default())?,
             similar_objects,
         };
@@ -206,21 +207,6 @@ impl Scene<'_> {
             *known = None;
         }
         Ok(())
-    }
-
-    fn weigh(
-        &self,
-        object: &StoredObject,
-        context: &GivenContext,
-        as_of: DateTime,
-    ) -> Result<OwnerSetDistribution, StoreError> {
-        let first_used = self.reader.first_used(object.key)?;
-        let arrivals = Arrivals {
-            absent: self.household.newcomers_after(civil_seconds(as_of)),
-            newcomers: first_used.map(|first| self.household.newcomers_after(first)).unwrap_or_default(),
-        };
-        let parameters = EvidenceParameters::default();
-        Ok(judge(self.household.roster(), arrivals, &object.class, context, &parameters)?)
     }
 
     /// Scores as a model handed them in. Who has joined since owns nothing as far as it knew.

@@ -1,6 +1,7 @@
 //! One state of the home, looked at for one call: what was seen of a thing, what lies near it, what looks like it, and
 //! what all of it says of its owners.
 
+mod home;
 mod judgement;
 mod known_ownership;
 mod likeness;
@@ -18,7 +19,7 @@ use crate::store::{Belief, Household, ObjectKey, Reader, StoreError, StoredObjec
 
 pub(crate) use judgement::{Basis, Judgement, Moment, thresholds_of};
 pub(crate) use surroundings::{LookAlikes, four_decimals};
-pub(crate) use usage::Window;
+pub(crate) use usage::{Listed, Window};
 
 /// A home, as it is in one transaction. What a call needs is read once, when it is first needed.
 pub(crate) struct Scene<'a> {
@@ -27,6 +28,7 @@ pub(crate) struct Scene<'a> {
     objects: OnceCell<Vec<StoredObject>>,
     has_few_objects: OnceCell<bool>,
     beliefs: OnceCell<BTreeMap<ObjectKey, Belief>>,
+    distributions: OnceCell<home::Distributions>,
 }
 
 impl<'a> Scene<'a> {
@@ -42,6 +44,7 @@ impl<'a> Scene<'a> {
             objects: OnceCell::new(),
             has_few_objects: OnceCell::new(),
             beliefs: OnceCell::new(),
+            distributions: OnceCell::new(),
         })
     }
 

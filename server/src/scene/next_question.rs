@@ -26,6 +26,7 @@ impl Scene<'_> {
     /// Failures of the database.
     pub(crate) fn next_question(&self) -> Result<Next<'_>, StoreError> {
         let beliefs = self.beliefs()?;
+        self.weigh_all()?;
         let questions = self.reader.open_questions()?;
         let mut unsettled: BTreeMap<&ObjectId, (&StoredObject, Judgement)> = BTreeMap::new();
         for object in self.objects()? {

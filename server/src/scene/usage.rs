@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use coin::captions::{Action, civil_seconds};
-use coin::usage::{UserStatistics, days_since, summarise};
+use coin::usage::{UserStatistics, days_since, session_order, summarise};
 use coin_schemas::tools::{DEFAULT_WINDOW_DAYS, ObjectRef, UsageSummary, UserUsage, display_name};
 use jiff::civil::DateTime;
 
@@ -28,18 +28,29 @@ impl Window {
     }
 }
 
+/// How much of a usage is listed, the latest of each.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Listed {
+    /// Captions of each person.
+    pub(crate) examples: usize,
+    /// Sessions.
+    pub(crate) sessions: usize,
+}
+
 impl Scene<'_> {
-    /// The use of a thing, with so many captions of each person.
+    /// The use of a thing.
     pub(crate) fn usage(
         &self,
         object: &StoredObject,
         window: Window,
-        max_examples: usize,
+        listed: Listed,
     ) -> Result<UsageSummary, StoreError> {
         let last = civil_seconds(window.as_of);
         let first = last.saturating_sub(i64::from(window.days) * SECONDS_A_DAY);
         let log = self.reader.usage(&self.household, object.key, first, last)?;
-        let statistics = summarise(&log.events, max_examples);
+        let statistics = summarise(&log.events, listed.examples);
+        let order = session_order(&log.events);
+        let left_out = order.len().saturating_sub(listed.sessions);
         Ok(UsageSummary {
             object: ObjectRef { id: object.id.clone(), name: display_name(&object.class) },
             as_of: window.as_of,
@@ -50,6 +61,10 @@ impl Scene<'_> {
                 .map(|user| usage_of(user, &self.household, &log, last))
                 .collect(),
             unattributed_events: statistics.unattributed_events,
+            session_order: order[left_out..]
+                .iter()
+                .map(|&user| self.household.roster().name(user).clone())
+                .collect(),
         })
     }
 }

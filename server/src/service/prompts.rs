@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::resources::internal;
 use crate::near_miss;
-use crate::scene::{LookAlikes, Moment, Scene, Window};
+use crate::scene::{Listed, LookAlikes, Moment, Scene, Window};
 use crate::store::{Store, StoreError, StoredObject};
 use crate::tools::Registry;
 
@@ -129,7 +129,8 @@ const SETTLE_TEXT: &str = "Find out whose the things in my home are, with as few
 
 fn infer(store: &Store, id: &str) -> Result<String, ErrorData> {
     let evidence = with_thing(store, id, |scene, object| {
-        let usage = scene.usage(object, Window::usual(scene.present()?), DEFAULT_MAX_EXAMPLES as usize)?;
+        let listed = Listed { examples: DEFAULT_MAX_EXAMPLES as usize, sessions: 0 };
+        let usage = scene.usage(object, Window::usual(scene.present()?), listed)?;
         let similar = match scene.look_alikes(object, DEFAULT_K as usize)? {
             LookAlikes::Found(found) => found,
             LookAlikes::NeverSeen | LookAlikes::NothingToCompare => Vec::new(),

@@ -59,7 +59,7 @@ fn the_columns_of_the_table_are_aligned() {
     for (line, owners) in lines[1..4].iter().zip(["everybody", "everybody", "Bob"]) {
         assert!(line[column..].starts_with(owners), "{table}");
     }
-    assert_eq!(lines[5], "3 things: 0 by answer, 1 inferred, 2 worth a question.");
+    assert_eq!(lines[5], "3 things: 0 by answer, 0 inferred, 3 worth a question.");
 }
 
 #[test]

@@ -92,7 +92,7 @@ fn only_things_that_see_an_answer_are_inferred_again() {
     let episode = EpisodeBuilder::three_things().write();
     let folder = tempfile::tempdir().unwrap();
     let events = folder.path().join("events.jsonl");
-    super::host(episode.path(), &["--gate", "always", "--quiet", "--events"])
+    super::host(episode.path(), &["--estimator", "model", "--gate", "always", "--quiet", "--events"])
         .arg(&events)
         .run()
         .expect_code(0);
@@ -108,7 +108,10 @@ fn only_things_that_see_an_answer_are_inferred_again() {
 #[test]
 fn the_papers_scheme_of_inference_can_be_had() {
     let calls = |scheme: &str| {
-        let report = super::report(&small_house(), &["--gate", "paper", "--reinference", scheme]);
+        let report = super::report(
+            &small_house(),
+            &["--estimator", "model", "--gate", "paper", "--reinference", scheme],
+        );
         assert_eq!(report["parameters"]["reinference"], scheme.replace('-', "_"));
         (report["metrics"]["questions"].as_u64().unwrap(), report["cost"]["model_calls"].as_u64().unwrap())
     };

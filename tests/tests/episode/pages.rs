@@ -44,7 +44,7 @@ fn every_thing_is_on_the_plan_and_its_evidence_on_the_page() {
 /// The slider goes through the states that the plan had, and each thing has exactly one at every step.
 #[test]
 fn the_plan_can_be_seen_as_it_was_after_every_question() {
-    let (page, report) = page(&small_house(), &[]);
+    let (page, report) = page(&small_house(), &["--gate", "always", "--max-questions", "4"]);
     let asked = super::questions(&report).len();
     assert!(asked > 0 && page.contains(&format!("type=\"range\" min=\"0\" max=\"{asked}\"")), "{asked}");
     for mark in page.split("<a class=\"thing\"").skip(1) {

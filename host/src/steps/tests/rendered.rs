@@ -56,7 +56,7 @@ async fn inference(scoring: Scoring) -> String {
         let object = home.things[&ObjectId::new(id).unwrap()].clone();
         let whole = evidence::context(&home.server, &object.id, home.episode.now, &BTreeSet::new(), 2).await;
         let context = match scoring.estimator {
-            Estimator::Fused => evidence::surroundings(&whole.unwrap()),
+            Estimator::Fused => evidence::surroundings(&home.server, &object.id).await.unwrap(),
             _ => whole.unwrap(),
         };
         contexts.push(ThingInContext { object, context });

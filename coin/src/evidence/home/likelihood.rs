@@ -1,0 +1,243 @@
+//! How well every owner set explains who used a thing, by three accounts of how a home treats its things.
+
+use libm::{exp, log};
+
+use super::super::EvidenceParameters;
+use super::super::prior::{Candidates, relative_weights};
+use super::habits::{EVENNESS, LENDING, Lending, MISTAKEN};
+use crate::owners::OwnerSet;
+use crate::roster::UserIndex;
+
+/// A change of hands is looked for at no more than so many places of a history, evenly spread.
+const MOST_CUTS: usize = 16;
+
+/// How probable it is that a thing which changed hands was everybody's before; else it was one person's.
+const EVERYBODYS_BEFORE: f64 = 0.2;
+
+/// The owners of a shared thing who have used it so much more often than another that it makes no further difference.
+const FAR_AHEAD: usize = 64;
+
+/// p(who used the thing, session by session | S) for every candidate set S of one thing, relative to the largest of all
+/// its numbers, by account and by the habits of the home that the account depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Accounts {
+    /// Nobody but the owners uses it, and where there are several they take turns; other sightings are mistaken. For each
+    /// of [`MISTAKEN`], the sets in order.
+    pub(super) kept: Vec<Vec<f64>>,
+    /// Others borrow it, and owners use it about evenly. For each of [`LENDING`] and then of [`EVENNESS`].
+    pub(super) lent: Vec<Vec<f64>>,
+    /// It was lent in the same way, and had other owners before some session. For each of [`LENDING`]; nothing where the
+    /// thing was used less than twice.
+    pub(super) changed: Vec<Vec<f64>>,
+}
+
+impl Accounts {
+    /// Of a thing whose users these were, by their places among the candidates, in order of time.
+    pub(super) fn new(users: &[usize], candidates: &Candidates, parameters: &EvidenceParameters) -> Self {
+        let all = relative_weights(&logarithms(users, candidates, parameters).concat());
+        let mut kept: Vec<Vec<f64>> = all.chunks(candidates.sets().len()).map(<[f64]>::to_vec).collect();
+        let changed = kept.split_off(MISTAKEN.len() + LENDING.len() * EVENNESS.len());
+        let lent = kept.split_off(MISTAKEN.len());
+        Self { kept, lent, changed }
+    }
+}
+
+/// The natural logarithms of all accounts, one after the other, for every set.
+pub(super) fn logarithms(
+    users: &[usize],
+    candidates: &Candidates,
+    parameters: &EvidenceParameters,
+) -> Vec<Vec<f64>> {
+    let (sets, members) = (candidates.sets(), candidates.people());
+    let counting = Counting::new(users.len(), members);
+    let counts = counts_of(users, members);
+    let turns = Turns::new(parameters.turns);
+    let kept = MISTAKEN.iter().map(|&mistaken| {
+        sets.iter().map(|&set| turns.log_likelihood(users, set, members, mistaken)).collect()
+    });
+    let lent = (0..LENDING.len())
+        .flat_map(|lending| (0..EVENNESS.len()).map(move |even| (lending, even)))
+        .map(|(lending, even)| {
+            sets.iter().map(|&set| counting.log_likelihood(&counts, set, lending, even)).collect()
+        });
+    let changed = match parameters.change_of_hands > 0.0 && users.len() > 1 && members > 1 {
+        true => changed_hands(users, candidates, &counting),
+        false => Vec::new(),
+    };
+    kept.chain(lent).chain(changed).collect()
+}
+
+fn counts_of(users: &[usize], members: usize) -> Vec<usize> {
+    let mut counts = vec![0; members];
+    for &user in users {
+        counts[user] += 1;
+    }
+    counts
+}
+
+/// The law of turns: of the owners, who has used a thing c times is the next one with a probability in proportion to
+/// exp(−β·c), so that nobody falls far behind. The paper's Appendix D has the limit of large β; β = 0 is chance.
+struct Turns {
+    /// exp(−β·d) for a lead d.
+    of_lead: Vec<f64>,
+}
+
+impl Turns {
+    fn new(beta: f64) -> Self {
+        Self { of_lead: (0..=FAR_AHEAD).map(|lead| exp(-beta * lead as f64)).collect() }
+    }
+
+    /// Σ ln((1−e)·q(u) + e/n) over the sessions, where q is the law of turns among the owners, and a mistaken sighting,
+    /// of probability e, names anybody.
+    fn log_likelihood(&self, users: &[usize], owners: OwnerSet, members: usize, mistaken: f64) -> f64 {
+        let by_mistake = mistaken / members as f64;
+        if owners.len() == 1 {
+            let own = users.iter().filter(|&&user| contains(owners, user)).count();
+            let (own, others) = (own as f64, (users.len() - own) as f64);
+            return own * log(1.0 - mistaken + by_mistake) + others * log(by_mistake);
+        }
+        let mut used: Vec<usize> = vec![0; owners.len()];
+        let places: Vec<usize> = owners.iter().map(UserIndex::place).collect();
+        let mut sum = 0.0;
+        for user in users {
+            let Some(owner) = places.iter().position(|place| place == user) else {
+                sum += log(by_mistake);
+                continue;
+            };
+            let fewest = used.iter().copied().min().unwrap_or(0);
+            let weight = |count: usize| self.of_lead[(count - fewest).min(FAR_AHEAD)];
+            let all: f64 = used.iter().map(|&count| weight(count)).sum();
+            sum += log((1.0 - mistaken) * weight(used[owner]) / all + by_mistake);
+            used[owner] += 1;
+        }
+        sum
+    }
+}
+
+fn contains(owners: OwnerSet, place: usize) -> bool {
+    UserIndex::new(place).is_some_and(|user| owners.contains(user))
+}
+
+/// The account of lending by numbers of sessions alone, with its gamma functions in tables.
+struct Counting {
+    members: usize,
+    lending: Vec<LendingTable>,
+    /// For each of [`EVENNESS`] the rising factorials of α and of kα for k owners.
+    evenness: Vec<Vec<RisingFactorials>>,
+}
+
+struct LendingTable {
+    borrowed: RisingFactorials,
+    own_use: RisingFactorials,
+    all: RisingFactorials,
+}
+
+/// ln (a)_i = lnΓ(a+i) − lnΓ(a) for i from 0 on.
+struct RisingFactorials(Vec<f64>);
+
+impl RisingFactorials {
+    fn new(a: f64, most: usize) -> Self {
+        let mut sum = 0.0;
+        let rising = (0..most).map(|step| {
+            sum += log(a + step as f64);
+            sum
+        });
+        Self(std::iter::once(0.0).chain(rising).collect())
+    }
+
+    fn at(&self, steps: usize) -> f64 {
+        self.0[steps]
+    }
+}
+
+impl Counting {
+    /// For up to so many sessions of so many members.
+    fn new(sessions: usize, members: usize) -> Self {
+        let lending = LENDING.map(|Lending { borrowed, own_use }| LendingTable {
+            borrowed: RisingFactorials::new(borrowed, sessions),
+            own_use: RisingFactorials::new(own_use, sessions),
+            all: RisingFactorials::new(borrowed + own_use, sessions),
+        });
+        let evenness = EVENNESS.map(|alpha| {
+            (0..=members)
+                .map(|owners| RisingFactorials::new(alpha * owners.max(1) as f64, sessions))
+                .collect()
+        });
+        Self { members, lending: lending.into(), evenness: evenness.into() }
+    }
+
+    /// ln p(c | S), as [`super::super::log_likelihood`] has it.
+    fn log_likelihood(&self, counts: &[usize], owners: OwnerSet, lending: usize, evenness: usize) -> f64 {
+        let (mut own, mut all) = (0, 0);
+        let mut shares = 0.0;
+        let evenness = &self.evenness[evenness];
+        for (place, &count) in counts.iter().enumerate() {
+            all += count;
+            if contains(owners, place) {
+                own += count;
+                shares += evenness[1].at(count);
+            }
+        }
+        let owner_count = owners.len();
+        let mut log_probability = 0.0;
+        if owner_count < self.members {
+            let table = &self.lending[lending];
+            let borrowed = all - own;
+            log_probability += table.borrowed.at(borrowed) + table.own_use.at(own)
+                - table.all.at(all)
+                - borrowed as f64 * log((self.members - owner_count) as f64);
+        }
+        if owner_count > 1 {
+            log_probability += shares - evenness[owner_count].at(own);
+        }
+        log_probability
+    }
+}
+
+/// The third account: the mean over the sessions at which the thing may have come to its owners, and over those whose it
+/// may have been before.
+fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) -> Vec<Vec<f64>> {
+    let (sets, members) = (candidates.sets(), candidates.people());
+    let singles = (0..members).filter_map(UserIndex::new).map(OwnerSet::single);
+    let everybody: OwnerSet = (0..members).filter_map(UserIndex::new).collect();
+    let before: Vec<(OwnerSet, f64)> = singles
+        .map(|single| (single, (1.0 - EVERYBODYS_BEFORE) / members as f64))
+        .chain([(everybody, EVERYBODYS_BEFORE)])
+        .collect();
+    let cuts = cuts(users.len());
+    (0..LENDING.len())
+        .map(|lending| {
+            let mut sums = vec![Vec::with_capacity(cuts.len()); sets.len()];
+            for &cut in &cuts {
+                let (earlier, later) = users.split_at(cut);
+                let (earlier, later) = (counts_of(earlier, members), counts_of(later, members));
+                let past = before.iter().map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, 0));
+                let past: Vec<f64> = past.collect();
+                let largest = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                for (&set, sum) in sets.iter().zip(&mut sums) {
+                    let others = before.iter().zip(&past).filter(|((other, _), _)| *other != set);
+                    let (weight, weights) =
+                        others.fold((0.0, 0.0), |(weight, weights), (&(_, prior), past)| {
+                            (weight + prior * exp(past - largest), weights + prior)
+                        });
+                    sum.push(
+                        largest + log(weight / weights) + counting.log_likelihood(&later, set, lending, 0),
+                    );
+                }
+            }
+            sums.iter().map(|sum| log_mean(sum)).collect()
+        })
+        .collect()
+}
+
+/// The places at which a history of so many sessions is cut in two, none of them empty.
+fn cuts(sessions: usize) -> Vec<usize> {
+    let places = (sessions - 1).min(MOST_CUTS);
+    (1..=places).map(|cut| (cut * sessions).div_ceil(places + 1).min(sessions - 1)).collect()
+}
+
+fn log_mean(logarithms: &[f64]) -> f64 {
+    let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = logarithms.iter().map(|&logarithm| exp(logarithm - largest)).sum();
+    largest + log(sum / logarithms.len() as f64)
+}

@@ -1,0 +1,172 @@
+//! The home as the evidence model sees it: fetched once in a run, and judged as a whole after every answer.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use coin::common_sense::{Expectation, expect};
+use coin::evidence::home::{HomeEvidence, HomeJudgement, SeenThing, Told};
+use coin::evidence::{EvidenceParameters, Opinion};
+use coin::owners::{OwnerSet, OwnerSetDistribution};
+use coin::roster::{Roster, RosterError};
+use coin_schemas::household::{ObjectId, Score};
+use coin_schemas::model::TaskObject;
+use coin_schemas::report::Withheld;
+use futures::{StreamExt, TryStreamExt};
+use jiff::civil::DateTime;
+use tokio::sync::OnceCell;
+
+use crate::evidence::{CONCURRENCY, whole_context};
+use crate::steps::{StepError, Steps};
+
+/// Whom people named as owners so far, by thing; nobody where somebody outside the household owns it.
+pub type Answers = BTreeMap<ObjectId, OwnerSet>;
+
+/// All things of a home, as far as the server tells of them.
+pub(super) struct SeenHome<'a> {
+    steps: &'a Steps<'a>,
+    things: &'a BTreeMap<ObjectId, TaskObject>,
+    /// The household as the evidence model is told of it.
+    roster: Roster,
+    withheld: BTreeSet<Withheld>,
+    as_of: DateTime,
+    parameters: EvidenceParameters,
+    seen: OnceCell<Seen>,
+    judged: Mutex<Option<(Answers, Arc<Judged>)>>,
+}
+
+/// What was fetched.
+struct Seen {
+    evidence: HomeEvidence,
+    places: BTreeMap<ObjectId, usize>,
+    /// What the file of classes expects of each thing.
+    expectations: Vec<Option<Expectation>>,
+}
+
+/// A home judged with some answers.
+pub(super) struct Judged {
+    answers: Vec<Option<OwnerSet>>,
+    judgement: HomeJudgement,
+}
+
+impl<'a> SeenHome<'a> {
+    /// # Errors
+    /// If the household cannot be told without what is withheld, which is a fault of this program.
+    pub(super) fn new(
+        steps: &'a Steps<'a>,
+        things: &'a BTreeMap<ObjectId, TaskObject>,
+        withheld: BTreeSet<Withheld>,
+        as_of: DateTime,
+    ) -> Result<Self, RosterError> {
+        Ok(Self {
+            roster: Roster::new(steps.household())?,
+            steps,
+            things,
+            withheld,
+            as_of,
+            parameters: EvidenceParameters::default(),
+            seen: OnceCell::new(),
+            judged: Mutex::new(None),
+        })
+    }
+
+    /// The household as the evidence model is told of it.
+    pub(super) fn roster(&self) -> &Roster {
+        &self.roster
+    }
+
+    /// What the evidence makes of a thing, with the file of classes for common sense.
+    pub(super) async fn by_evidence(
+        &self,
+        thing: &ObjectId,
+        answers: &Answers,
+    ) -> Result<OwnerSetDistribution, StepError> {
+        let seen = self.seen().await?;
+        let place = seen.place(thing)?;
+        Ok(self.judged(seen, answers).judgement.distributions()[place].clone())
+    }
+
+    /// The same with a model's common sense in place of the file's, or with none.
+    pub(super) async fn with_opinion(
+        &self,
+        thing: &ObjectId,
+        answers: &Answers,
+        opinion: Option<&[Score]>,
+    ) -> Result<OwnerSetDistribution, StepError> {
+        let seen = self.seen().await?;
+        let place = seen.place(thing)?;
+        let opinion = opinion.map_or(Opinion::None, Opinion::OfModel);
+        let judged = self.judged(seen, answers);
+        Ok(seen.evidence.reconsidered(&judged.judgement, &judged.answers, place, opinion))
+    }
+
+    /// The least probability that the best owner set of a thing can be left with, whatever a language model says of it.
+    pub(super) async fn least_confidence(
+        &self,
+        thing: &ObjectId,
+        answers: &Answers,
+    ) -> Result<f64, StepError> {
+        let seen = self.seen().await?;
+        let place = seen.place(thing)?;
+        let judged = self.judged(seen, answers);
+        Ok(seen.evidence.least_confidence(&judged.judgement, &judged.answers, place))
+    }
+
+    async fn seen(&self) -> Result<&Seen, StepError> {
+        self.seen.get_or_try_init(|| self.look()).await
+    }
+
+    /// Fetches what the tools tell of every thing.
+    async fn look(&self) -> Result<Seen, StepError> {
+        let things: Vec<ObjectId> = self.things.keys().cloned().collect();
+        let contexts: Vec<_> = futures::stream::iter(things)
+            .map(|thing| async move {
+                whole_context(self.steps.server(), &thing, self.as_of, &self.withheld).await
+            })
+            .buffered(CONCURRENCY)
+            .try_collect()
+            .await?;
+        let places: BTreeMap<ObjectId, usize> = self.things.keys().cloned().zip(0..).collect();
+        let things = self
+            .things
+            .values()
+            .zip(&contexts)
+            .map(|(thing, context)| SeenThing::in_context(&self.roster, &thing.class, context, &places));
+        let things = things.collect::<Result<Vec<_>, _>>().map_err(unusable)?;
+        let expectations = self.things.values().map(|thing| expect(thing.class.as_str(), &self.roster));
+        Ok(Seen {
+            evidence: HomeEvidence::new(things, self.parameters),
+            expectations: expectations.collect(),
+            places,
+        })
+    }
+
+    /// The home with these answers, which is judged once as long as there is no other one.
+    fn judged(&self, seen: &Seen, answers: &Answers) -> Arc<Judged> {
+        let mut judged = self.judged.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((before, judged)) = &*judged
+            && before == answers
+        {
+            return Arc::clone(judged);
+        }
+        let by_place: Vec<Option<OwnerSet>> =
+            self.things.keys().map(|thing| answers.get(thing).copied()).collect();
+        let told: Vec<Told<'_>> = by_place
+            .iter()
+            .zip(&seen.expectations)
+            .map(|(&answer, expectation)| Told { answer, opinion: expectation.as_ref().into() })
+            .collect();
+        let now = Arc::new(Judged { judgement: seen.evidence.judge(&told), answers: by_place });
+        *judged = Some((answers.clone(), Arc::clone(&now)));
+        now
+    }
+}
+
+impl Seen {
+    fn place(&self, thing: &ObjectId) -> Result<usize, StepError> {
+        self.places.get(thing).copied().ok_or_else(|| unusable(format!("thing {thing} is not in the home")))
+    }
+}
+
+fn unusable(reason: impl std::fmt::Display) -> StepError {
+    StepError::Unusable { reason: reason.to_string() }
+}
