@@ -2,6 +2,7 @@
 
 use std::cmp::Reverse;
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use coin_schemas::household::{Score, UserName};
 use coin_schemas::model::OwnerSetProbability;
@@ -138,7 +139,8 @@ pub enum DistributionError {
 /// Probabilities of owner sets; they sum to 1. The default, without a set, is of a household without members.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct OwnerSetDistribution {
-    entries: Vec<(OwnerSet, f64)>,
+    /// Shared, because a belief is told to many and changes as a whole.
+    entries: Arc<[(OwnerSet, f64)]>,
 }
 
 impl OwnerSetDistribution {
@@ -154,11 +156,20 @@ impl OwnerSetDistribution {
         for (_, weight) in &mut entries {
             *weight = libm::exp(*weight - largest);
         }
+        Self::from_weights(entries)
+    }
+
+    /// Makes weights sum to 1.
+    ///
+    /// # Panics
+    /// If they do not sum to a positive number.
+    pub fn from_weights(mut entries: Vec<(OwnerSet, f64)>) -> Self {
         let sum: f64 = entries.iter().map(|&(_, weight)| weight).sum();
+        assert!(sum > 0.0 && sum.is_finite(), "at least one owner set must be possible");
         for (_, weight) in &mut entries {
             *weight /= sum;
         }
-        Self { entries }
+        Self { entries: entries.into() }
     }
 
     /// p(S) = ∏_{u∈S} s_u · ∏_{u∉S} (1 − s_u), normalised over the candidate sets: the distribution that
@@ -187,12 +198,10 @@ impl OwnerSetDistribution {
     /// Takes probabilities by name, as a model hands them over. Sets that are left out have probability 0; they
     /// stay candidates, because a prediction set that may exclude nothing must hold them too.
     pub fn from_named(roster: &Roster, sets: &[OwnerSetProbability]) -> Result<Self, DistributionError> {
-        let mut distribution = Self::restored(roster, sets)?;
+        let restored = Self::restored(roster, sets)?;
         let sum = sets.iter().fold(0.0, |sum, set| sum + set.probability);
-        for (_, probability) in &mut distribution.entries {
-            *probability /= sum;
-        }
-        Ok(distribution)
+        let entries = restored.entries.iter().map(|&(set, probability)| (set, probability / sum));
+        Ok(Self { entries: entries.collect() })
     }
 
     /// Takes back what [`Self::to_named`] gave, to the last bit: the probabilities are not made to sum to 1 once more.
@@ -218,7 +227,7 @@ impl OwnerSetDistribution {
         let left_out = candidate_sets(roster.len()).into_iter().filter(|set| !named.contains(set));
         entries.extend(left_out.map(|set| (set, 0.0)));
         entries.sort_by_key(|&(set, _)| set.order());
-        Ok(Self { entries })
+        Ok(Self { entries: entries.into() })
     }
 
     /// The possible sets by name, most probable first. Sets of probability 0 are left out.

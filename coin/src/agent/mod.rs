@@ -17,7 +17,7 @@ use thiserror::Error;
 
 pub use effect::Effect;
 pub use event::{Event, Inference, Parts};
-pub use state::{Known, KnownSource, ObjectState};
+pub use state::{Known, KnownSource, NOTABLE, ObjectState};
 
 use crate::calibration::Thresholds;
 use crate::dialogue::Reading;
@@ -230,9 +230,14 @@ impl Agent {
         for (object, result) in finished {
             let Some(state) = self.objects.get_mut(&object) else { continue };
             match result {
+                Ok(inference) if state.inference() == Some(&inference) => {}
                 Ok(inference) => {
+                    let is_news = state.is_news(&inference);
                     state.apply_inference(inference, &self.settings);
-                    recorded.push(object);
+                    if is_news {
+                        state.is_recorded();
+                        recorded.push(object);
+                    }
                 }
                 Err(reason) => state.apply_failure(reason),
             }
@@ -295,8 +300,18 @@ impl Agent {
         self.start_pass()
     }
 
+    /// Has the beliefs stored that moved too little to be stored before, and ends the run.
     fn finish(&mut self, stopped: Stopped) -> Vec<Effect> {
         self.phase = Phase::Finished;
-        vec![Effect::Finish { stopped }]
+        let unrecorded = self.objects.iter_mut().filter(|(_, state)| state.is_unrecorded());
+        let mut objects: Vec<ObjectId> = unrecorded
+            .map(|(object, state)| {
+                state.is_recorded();
+                object.clone()
+            })
+            .collect();
+        objects.sort_by(compare_ids);
+        let record = (!objects.is_empty()).then_some(Effect::Record { objects });
+        record.into_iter().chain([Effect::Finish { stopped }]).collect()
     }
 }

@@ -1,5 +1,7 @@
 //! D[o] of Algorithm 1: what the agent believes of one thing.
 
+use std::sync::Arc;
+
 use coin_schemas::household::Score;
 use coin_schemas::model::RelatedObjects;
 use coin_schemas::report::Gate;
@@ -8,6 +10,9 @@ use super::{AgentSettings, Inference, KNOWN_CONFIDENCE, Parts};
 use crate::calibration::Assessment;
 use crate::dialogue::Reading;
 use crate::owners::{OwnerSet, OwnerSetDistribution};
+
+/// A belief that moves by less than this is not told to anybody before the end of the run.
+pub const NOTABLE: f64 = 0.005;
 
 /// What is reliably known of a thing's owners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -30,7 +35,10 @@ pub enum KnownSource {
 /// What is believed of one thing.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ObjectState {
-    belief: Option<Belief>,
+    /// Shared with earlier states of the agent, of which most beliefs are the same.
+    belief: Option<Arc<Belief>>,
+    /// Whether the belief has moved a little since it was last stored.
+    unrecorded: bool,
     answer: Option<Reading>,
     times_asked: u32,
     closed_to_questions: bool,
@@ -48,6 +56,11 @@ impl ObjectState {
     /// The score of every member; `None` before the first inference.
     pub fn scores(&self) -> Option<&[Score]> {
         self.belief.as_ref().map(|belief| belief.inference.scores.as_slice())
+    }
+
+    /// What was last inferred; `None` before the first inference.
+    pub(super) fn inference(&self) -> Option<&Inference> {
+        self.belief.as_ref().map(|belief| &belief.inference)
     }
 
     /// The probabilities of owner sets; `None` before the first inference.
@@ -129,7 +142,31 @@ impl ObjectState {
             Gate::Risk | Gate::Set | Gate::Always | Gate::Never => assessment.owners,
         };
         self.problem.clone_from(&inference.problem);
-        self.belief = Some(Belief { inference, assessment, owners });
+        self.unrecorded = true;
+        self.belief = Some(Arc::new(Belief { inference, assessment, owners }));
+    }
+
+    /// Whether a belief differs from the one there is by enough to tell anybody: in its best owner set, or in how sure that
+    /// is by [`NOTABLE`].
+    pub fn is_news(&self, inference: &Inference) -> bool {
+        self.belief.as_ref().is_none_or(|belief| {
+            let ((owners, confidence), before) = (inference.distribution.best(), &belief.inference);
+            let (owners_before, confidence_before) = before.distribution.best();
+            owners != owners_before
+                || (confidence - confidence_before).abs() >= NOTABLE
+                || (inference.problem != before.problem)
+                || (inference.parts.as_ref().map(|parts| &parts.model)
+                    != before.parts.as_ref().map(|parts| &parts.model))
+        })
+    }
+
+    /// Whether the belief is not stored as it is.
+    pub(super) fn is_unrecorded(&self) -> bool {
+        self.unrecorded
+    }
+
+    pub(super) fn is_recorded(&mut self) {
+        self.unrecorded = false;
     }
 
     /// An earlier belief stays; the reader of the report learns that it could not be renewed.

@@ -4,13 +4,14 @@
 use coin::calibration::{CalibrationSample, Levels, calibrate};
 use coin::conformal::risk::{Outcome, RiskSample, risk_threshold};
 use coin::conformal::{Quantile, split};
+use coin::evidence::home::{HomeEvidence, SeenThing, Told};
 use coin::evidence::{EvidenceParameters, KnownRelative, Opinion, Relation, log_likelihood, posterior};
 use coin::metrics::{Judged, summarise};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin_schemas::calibration::NonconformityScore;
 use serde_json::Value;
 
-use crate::support::{level, provenance, scores, set, values};
+use crate::support::{level, provenance, scores, set, user, values};
 
 fn table(text: &str) -> Vec<Value> {
     let rows: Vec<Value> = serde_json::from_str(text).unwrap();
@@ -37,6 +38,37 @@ fn counts(value: &Value) -> Vec<u64> {
 
 fn assert_close(found: f64, expected: f64, tolerance: f64, row: &Value) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected} in {row}");
+}
+
+#[test]
+fn homes_are_judged_as_by_enumeration() {
+    for row in table(include_str!("../known_answers/home.json")) {
+        let members = row["members"].as_u64().unwrap() as usize;
+        let things: Vec<SeenThing> = row["things"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|users| SeenThing {
+                class: String::new(),
+                sessions: numbers(users).into_iter().map(|place| user(place as usize)).collect(),
+                near: Vec::new(),
+                alike: Vec::new(),
+                candidates: (0..members).map(user).collect(),
+                latecomers: OwnerSet::EMPTY,
+            })
+            .collect();
+        let mut told = vec![Told { answer: None, opinion: Opinion::None }; things.len()];
+        for answer in row["answers"].as_array().unwrap() {
+            told[number(&answer["thing"]) as usize].answer = Some(owners(&answer["owners"]));
+        }
+        let judgement = HomeEvidence::new(things, EvidenceParameters::default()).judge(&told);
+        for (found, expected) in judgement.distributions().iter().zip(row["posteriors"].as_array().unwrap()) {
+            for set in expected.as_array().unwrap() {
+                let probability = found.probability(owners(&set["owners"]));
+                assert_close(probability, number(&set["probability"]), 1e-8, &row);
+            }
+        }
+    }
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! One pass of LLM-INFER over the things that need it.
 
-use coin::agent::{Event, Inference};
+use coin::agent::{Agent, Event, Inference};
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::ObjectId;
-use coin_schemas::report::Stopped;
+use coin_schemas::report::{Estimator, Stopped};
 use futures::StreamExt;
 use tokio::sync::Semaphore;
 
 use super::{DriveError, Driver};
-use crate::estimation::{Answers, Estimate};
+use crate::estimation::Estimate;
 
 impl Driver<'_> {
     /// Has these things scored, several conversations at once. Results are taken in the order of the things, so that
@@ -17,8 +17,9 @@ impl Driver<'_> {
         &mut self,
         pass: usize,
         objects: Vec<ObjectId>,
-        answers: &Answers,
+        agent: &Agent,
     ) -> Result<Vec<Event>, DriveError> {
+        let answers = &agent.answers();
         self.observer.observe(&LogEvent::InferenceStarted { pass, objects: objects.clone() })?;
         let mut events = Vec::new();
         let mut waiting = Vec::new();
@@ -26,7 +27,7 @@ impl Driver<'_> {
             match self.journal.past_inference(object) {
                 Some(inference) => {
                     self.estimation.remember(object, &inference);
-                    events.push(self.note(object, inference)?);
+                    events.push(self.note(object, inference, agent)?);
                 }
                 None => waiting.push(self.thing(object)?.clone()),
             }
@@ -70,17 +71,23 @@ impl Driver<'_> {
                     })?;
                 }
                 let inference = outcome?;
-                // What was judged without the model for want of tokens is judged by it when the run goes on.
-                if !(self.steps.is_out_of_budget() && inference.problem.is_some()) {
+                // What was judged without the model for want of tokens is judged by it when the run goes on. What no
+                // model is paid for is worked out again.
+                let is_free = self.steps.scoring().estimator == Estimator::Evidence;
+                if !(is_free || self.steps.is_out_of_budget() && inference.problem.is_some()) {
                     self.journal.inferred(&thing.id, &inference, self.roster)?;
                 }
-                events.push(self.note(&thing.id, inference)?);
+                events.push(self.note(&thing.id, inference, agent)?);
             }
         }
         Ok(events)
     }
 
-    fn note(&mut self, object: &ObjectId, inference: Inference) -> Result<Event, DriveError> {
+    /// Tells the observer what is new.
+    fn note(&mut self, object: &ObjectId, inference: Inference, agent: &Agent) -> Result<Event, DriveError> {
+        if !agent.object(object).is_none_or(|state| state.is_news(&inference)) {
+            return Ok(Event::Inferred { object: object.clone(), inference });
+        }
         if let Some(reason) = &inference.problem {
             self.observer
                 .observe(&LogEvent::ModelFaltered { object_id: object.clone(), reason: reason.clone() })?;

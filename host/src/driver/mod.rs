@@ -7,11 +7,11 @@ mod infer;
 use std::collections::BTreeMap;
 
 use coin::agent::{Agent, Effect, Event, ObjectState, UnexpectedEvent};
-use coin::owners::OwnerSet;
+use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::roster::Roster;
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::{ObjectId, Source};
-use coin_schemas::model::TaskObject;
+use coin_schemas::model::{OwnerSetProbability, TaskObject};
 use coin_schemas::report::{QuestionReport, Stopped};
 use coin_schemas::tools::{RecordScores, RecordScoresResult};
 use jiff::civil::DateTime;
@@ -25,6 +25,9 @@ use crate::model::ModelError;
 use crate::output::EventLogError;
 use crate::person::{Person, PersonError};
 use crate::steps::{StepError, Steps};
+
+/// Owner sets that are less probable are not stored. All of them together are less than a server takes for rounding.
+const WORTH_STORING: f64 = 1e-10;
 
 /// Why a run could not be carried through.
 #[derive(Debug, Error)]
@@ -175,8 +178,7 @@ impl Run<'_> {
             for effect in effects {
                 match effect {
                     Effect::Infer { objects } => {
-                        let answers = self.agent.answers();
-                        events.extend(self.driver.infer(pass, objects, &answers).await?);
+                        events.extend(self.driver.infer(pass, objects, &self.agent).await?);
                         pass += 1;
                     }
                     Effect::Record { objects } => self.driver.record(&self.agent, &objects).await?,
@@ -210,6 +212,14 @@ impl Run<'_> {
     }
 }
 
+/// The owner sets that are worth storing, most probable first. A household of eight has 255, most of them next to
+/// impossible.
+fn likely_sets(distribution: &OwnerSetDistribution, roster: &Roster) -> Vec<OwnerSetProbability> {
+    let mut sets = distribution.to_named(roster);
+    sets.retain(|set| set.probability >= WORTH_STORING);
+    sets
+}
+
 impl Driver<'_> {
     fn standings(&self, agent: &Agent) -> BTreeMap<ObjectId, Standing> {
         let unknown = ObjectState::default();
@@ -237,7 +247,7 @@ impl Driver<'_> {
                     .into_iter()
                     .map(|(name, score)| (name.to_string(), score.value()))
                     .collect(),
-                owner_sets: Some(distribution.to_named(self.roster)),
+                owner_sets: Some(likely_sets(distribution, self.roster)),
                 model: Some(self.model.to_owned()),
             };
             let _: RecordScoresResult = self.server.call("record_scores", &arguments).await?;

@@ -31,7 +31,7 @@ pub(super) struct SeenHome<'a> {
     as_of: DateTime,
     parameters: EvidenceParameters,
     seen: OnceCell<Seen>,
-    judged: Mutex<Option<(Answers, Arc<Judged>)>>,
+    judged: Mutex<Option<(Answers, Arc<HomeJudgement>)>>,
 }
 
 /// What was fetched.
@@ -40,12 +40,6 @@ struct Seen {
     places: BTreeMap<ObjectId, usize>,
     /// What the file of classes expects of each thing.
     expectations: Vec<Option<Expectation>>,
-}
-
-/// A home judged with some answers.
-pub(super) struct Judged {
-    answers: Vec<Option<OwnerSet>>,
-    judgement: HomeJudgement,
 }
 
 impl<'a> SeenHome<'a> {
@@ -82,7 +76,7 @@ impl<'a> SeenHome<'a> {
     ) -> Result<OwnerSetDistribution, StepError> {
         let seen = self.seen().await?;
         let place = seen.place(thing)?;
-        Ok(self.judged(seen, answers).judgement.distributions()[place].clone())
+        Ok(self.judged(seen, answers).distributions()[place].clone())
     }
 
     /// The same with a model's common sense in place of the file's, or with none.
@@ -96,7 +90,7 @@ impl<'a> SeenHome<'a> {
         let place = seen.place(thing)?;
         let opinion = opinion.map_or(Opinion::None, Opinion::OfModel);
         let judged = self.judged(seen, answers);
-        Ok(seen.evidence.reconsidered(&judged.judgement, &judged.answers, place, opinion))
+        Ok(seen.evidence.reconsidered(&judged, place, opinion))
     }
 
     /// The least probability that the best owner set of a thing can be left with, whatever a language model says of it.
@@ -108,7 +102,7 @@ impl<'a> SeenHome<'a> {
         let seen = self.seen().await?;
         let place = seen.place(thing)?;
         let judged = self.judged(seen, answers);
-        Ok(seen.evidence.least_confidence(&judged.judgement, &judged.answers, place))
+        Ok(seen.evidence.least_confidence(&judged, place))
     }
 
     async fn seen(&self) -> Result<&Seen, StepError> {
@@ -141,21 +135,22 @@ impl<'a> SeenHome<'a> {
     }
 
     /// The home with these answers, which is judged once as long as there is no other one.
-    fn judged(&self, seen: &Seen, answers: &Answers) -> Arc<Judged> {
+    fn judged(&self, seen: &Seen, answers: &Answers) -> Arc<HomeJudgement> {
         let mut judged = self.judged.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((before, judged)) = &*judged
-            && before == answers
-        {
-            return Arc::clone(judged);
-        }
-        let by_place: Vec<Option<OwnerSet>> =
-            self.things.keys().map(|thing| answers.get(thing).copied()).collect();
-        let told: Vec<Told<'_>> = by_place
-            .iter()
+        let told: Vec<Told<'_>> = self
+            .things
+            .keys()
             .zip(&seen.expectations)
-            .map(|(&answer, expectation)| Told { answer, opinion: expectation.as_ref().into() })
+            .map(|(thing, expectation)| Told {
+                answer: answers.get(thing).copied(),
+                opinion: expectation.as_ref().into(),
+            })
             .collect();
-        let now = Arc::new(Judged { judgement: seen.evidence.judge(&told), answers: by_place });
+        let now = Arc::new(match &*judged {
+            Some((before, judged)) if before == answers => return Arc::clone(judged),
+            Some((_, judged)) => seen.evidence.judge_again(&told, judged),
+            None => seen.evidence.judge(&told),
+        });
         *judged = Some((answers.clone(), Arc::clone(&now)));
         now
     }

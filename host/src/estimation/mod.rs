@@ -75,9 +75,12 @@ impl<'a> Estimation<'a> {
         })
     }
 
-    /// How many things are judged in one conversation.
+    /// How many things are judged at once: in one conversation, or without any.
     pub fn batch(&self) -> usize {
-        self.steps.scoring().batch.max(1)
+        match self.steps.scoring().estimator {
+            Estimator::Evidence => usize::MAX,
+            Estimator::Model | Estimator::Fused => self.steps.scoring().batch.max(1),
+        }
     }
 
     /// Takes over what an earlier part of the run concluded, so that the model is not asked for it again.

@@ -52,9 +52,9 @@ pub(super) fn logarithms(
     let counting = Counting::new(users.len(), members);
     let counts = counts_of(users, members);
     let turns = Turns::new(parameters.turns);
-    let kept = MISTAKEN.iter().map(|&mistaken| {
-        sets.iter().map(|&set| turns.log_likelihood(users, set, members, mistaken)).collect()
-    });
+    let of_sets: Vec<[f64; MISTAKEN.len()]> =
+        sets.iter().map(|&set| turns.log_likelihood(users, set, members)).collect();
+    let kept = (0..MISTAKEN.len()).map(|mistaken| of_sets.iter().map(|of_set| of_set[mistaken]).collect());
     let lent = (0..LENDING.len())
         .flat_map(|lending| (0..EVENNESS.len()).map(move |even| (lending, even)))
         .map(|(lending, even)| {
@@ -88,29 +88,54 @@ impl Turns {
     }
 
     /// Σ ln((1−e)·q(u) + e/n) over the sessions, where q is the law of turns among the owners, and a mistaken sighting,
-    /// of probability e, names anybody.
-    fn log_likelihood(&self, users: &[usize], owners: OwnerSet, members: usize, mistaken: f64) -> f64 {
-        let by_mistake = mistaken / members as f64;
-        if owners.len() == 1 {
-            let own = users.iter().filter(|&&user| contains(owners, user)).count();
-            let (own, others) = (own as f64, (users.len() - own) as f64);
-            return own * log(1.0 - mistaken + by_mistake) + others * log(by_mistake);
-        }
-        let mut used: Vec<usize> = vec![0; owners.len()];
+    /// of probability e, names anybody. For each of [`MISTAKEN`].
+    fn log_likelihood(&self, users: &[usize], owners: OwnerSet, members: usize) -> [f64; MISTAKEN.len()] {
         let places: Vec<usize> = owners.iter().map(UserIndex::place).collect();
-        let mut sum = 0.0;
+        let mut used: Vec<usize> = vec![0; places.len()];
+        let mut products = MISTAKEN.map(|_| LogProduct::default());
         for user in users {
-            let Some(owner) = places.iter().position(|place| place == user) else {
-                sum += log(by_mistake);
-                continue;
-            };
-            let fewest = used.iter().copied().min().unwrap_or(0);
-            let weight = |count: usize| self.of_lead[(count - fewest).min(FAR_AHEAD)];
-            let all: f64 = used.iter().map(|&count| weight(count)).sum();
-            sum += log((1.0 - mistaken) * weight(used[owner]) / all + by_mistake);
-            used[owner] += 1;
+            let turn = places.iter().position(|place| place == user).map_or(0.0, |owner| {
+                let fewest = used.iter().copied().min().unwrap_or(0);
+                let weight = |count: usize| self.of_lead[(count - fewest).min(FAR_AHEAD)];
+                let all: f64 = used.iter().map(|&count| weight(count)).sum();
+                let turn = weight(used[owner]) / all;
+                used[owner] += 1;
+                turn
+            });
+            for (product, mistaken) in products.iter_mut().zip(MISTAKEN) {
+                product.times((1.0 - mistaken) * turn + mistaken / members as f64);
+            }
         }
-        sum
+        products.map(LogProduct::logarithm)
+    }
+}
+
+/// The logarithm of a product of many probabilities, which takes few logarithms.
+#[derive(Debug, Clone, Copy)]
+struct LogProduct {
+    sum: f64,
+    product: f64,
+}
+
+impl Default for LogProduct {
+    fn default() -> Self {
+        Self { sum: 0.0, product: 1.0 }
+    }
+}
+
+impl LogProduct {
+    /// Far from where numbers become subnormal.
+    const SMALL: f64 = 1e-200;
+
+    fn times(&mut self, factor: f64) {
+        self.product *= factor;
+        if self.product < Self::SMALL {
+            *self = Self { sum: self.logarithm(), product: 1.0 };
+        }
+    }
+
+    fn logarithm(self) -> f64 {
+        self.sum + log(self.product)
     }
 }
 

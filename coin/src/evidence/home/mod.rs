@@ -7,16 +7,21 @@
 mod habits;
 mod likelihood;
 mod resemblance;
+mod weighed;
 
-use libm::{exp, log};
+use std::borrow::Cow;
+use std::sync::Arc;
 
-use super::prior::{Candidates, Opinion, SizePrior, logarithms, relative_weights, with_relatives};
+use libm::exp;
+
+use super::prior::{Candidates, Opinion, relative_weights};
 use super::{EvidenceParameters, HabitSource, Relation, likeness_counts, log_likelihood};
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::UserIndex;
-use habits::{Habits, SIZES};
+use habits::Habits;
 use likelihood::Accounts;
 use resemblance::{MOST_ALIKE, Resemblance};
+use weighed::{Basis, Weighed};
 
 /// Where a thing has more candidate sets than this, as in a household of more than twelve, it is judged by itself with the
 /// bare formula of [`super::log_likelihood`]; so many people give their home no one habit.
@@ -24,9 +29,6 @@ const MOST_SETS: usize = 800;
 
 /// From this probability of its best owner set on, a thing helps to find out what looks tell in a home.
 const SURE_ENOUGH: f64 = 0.7;
-
-/// How probable it is that a person's answer is right, as far as the habits of the home are learnt from it.
-const TRUST: f64 = 0.95;
 
 /// The most rivals of a best owner set that are tried, those which explain the use of the thing best. In a household of five
 /// these are all.
@@ -87,10 +89,12 @@ enum Use {
 /// How probable every owner set of every thing is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HomeJudgement {
-    distributions: Vec<OwnerSetDistribution>,
+    weighed: Vec<Arc<Weighed>>,
     habits: Vec<(Habits, f64)>,
-    /// For every set of every thing, how much likelier or less its looks make it.
+    beliefs: Vec<Arc<Vec<f64>>>,
+    /// For every set of every thing, how much likelier or less its looks make it; nothing where looks tell nothing.
     looks: Vec<Vec<f64>>,
+    distributions: Vec<OwnerSetDistribution>,
 }
 
 impl HomeJudgement {
@@ -120,21 +124,56 @@ impl HomeEvidence {
     /// # Panics
     /// If not every thing is told of.
     pub fn judge(&self, told: &[Told<'_>]) -> HomeJudgement {
+        self.judged(told, None)
+    }
+
+    /// Judges every thing again after more was answered, with the opinions of before. The result is that of
+    /// [`Self::judge`]; what did not change is not worked out again.
+    ///
+    /// # Panics
+    /// If not every thing is told of.
+    pub fn judge_again(&self, told: &[Told<'_>], before: &HomeJudgement) -> HomeJudgement {
+        self.judged(told, Some(before))
+    }
+
+    fn judged(&self, told: &[Told<'_>], before: Option<&HomeJudgement>) -> HomeJudgement {
         assert_eq!(told.len(), self.things.len(), "something must be told of every thing, if only nothing");
         let answers: Vec<Option<OwnerSet>> = told.iter().map(|told| told.answer).collect();
-        let weighed: Vec<Weighed<'_>> = self
-            .things
-            .iter()
-            .zip(told)
-            .map(|(thing, told)| self.weigh(thing, told.opinion, &answers))
+        let weighed: Vec<Arc<Weighed>> = (0..self.things.len())
+            .map(|place| {
+                let basis = self.basis(place, &answers);
+                match before.map(|before| &before.weighed[place]) {
+                    Some(before) if before.basis == basis => Arc::clone(before),
+                    _ => Arc::new(self.weigh(place, basis, told[place].opinion)),
+                }
+            })
             .collect();
-        let habits = self.habits(&weighed, &answers);
-        let beliefs: Vec<Vec<f64>> = weighed.iter().map(|thing| thing.belief(&habits)).collect();
+        let habits = self.habits(&weighed);
+        let same_habits = before.is_some_and(|before| are_same(&before.habits, &habits));
+        let beliefs: Vec<Arc<Vec<f64>>> = weighed
+            .iter()
+            .enumerate()
+            .map(|(place, weighed)| match before {
+                Some(before) if same_habits && Arc::ptr_eq(weighed, &before.weighed[place]) => {
+                    Arc::clone(&before.beliefs[place])
+                }
+                _ => Arc::new(weighed.belief(&self.things[place], &habits, &self.parameters)),
+            })
+            .collect();
         let looks = self.by_looks(&beliefs, &answers);
-        let judged = self.things.iter().zip(&beliefs).zip(&looks);
-        let distributions =
-            judged.map(|((thing, belief), looks)| thing.distribution(&product(belief, looks))).collect();
-        HomeJudgement { distributions, habits, looks }
+        let distributions = (0..self.things.len())
+            .map(|place| match before {
+                Some(before)
+                    if looks.is_empty()
+                        && before.looks.is_empty()
+                        && Arc::ptr_eq(&beliefs[place], &before.beliefs[place]) =>
+                {
+                    before.distributions[place].clone()
+                }
+                _ => self.things[place].distribution(&seen_with(&beliefs[place], looks.get(place))),
+            })
+            .collect();
+        HomeJudgement { weighed, habits, beliefs, looks, distributions }
     }
 
     /// What is to be made of one thing with another opinion than it was judged with. The habits of the home and what its
@@ -142,25 +181,20 @@ impl HomeEvidence {
     pub fn reconsidered(
         &self,
         judgement: &HomeJudgement,
-        answers: &[Option<OwnerSet>],
         place: usize,
         opinion: Opinion<'_>,
     ) -> OwnerSetDistribution {
         let thing = &self.things[place];
-        let belief = self.weigh(thing, opinion, answers).belief(&judgement.habits);
-        thing.distribution(&product(&belief, &judgement.looks[place]))
+        let weighed = self.weigh(place, judgement.weighed[place].basis.clone(), opinion);
+        let belief = weighed.belief(thing, &judgement.habits, &self.parameters);
+        thing.distribution(&seen_with(&belief, judgement.looks.get(place)))
     }
 
     /// The least probability that the best owner set of a thing can be left with by a language model, whatever it says:
     /// with the whole weight of an opinion on a rival. 1 where there is no rival. Where this is high a model need not be
     /// asked, because its word can settle nothing.
-    pub fn least_confidence(
-        &self,
-        judgement: &HomeJudgement,
-        answers: &[Option<OwnerSet>],
-        place: usize,
-    ) -> f64 {
-        let without = self.reconsidered(judgement, answers, place, Opinion::None);
+    pub fn least_confidence(&self, judgement: &HomeJudgement, place: usize) -> f64 {
+        let without = self.reconsidered(judgement, place, Opinion::None);
         let (best, confidence) = without.best();
         let thing = &self.things[place];
         let prior = thing.candidates.by_size(self.parameters.sizes());
@@ -177,64 +211,44 @@ impl HomeEvidence {
             .collect();
         rivals.sort_by(|left, right| right.0.total_cmp(&left.0));
         let left_by = |&(_, rival): &(f64, OwnerSet)| {
-            self.reconsidered(judgement, answers, place, Opinion::Certain(rival)).probability(best)
+            self.reconsidered(judgement, place, Opinion::Certain(rival)).probability(best)
         };
         rivals.iter().take(MOST_RIVALS).map(left_by).fold(confidence, f64::min)
     }
 
-    fn weigh<'a>(&self, thing: &'a Thing, opinion: Opinion<'_>, answers: &[Option<OwnerSet>]) -> Weighed<'a> {
-        let couplings: Vec<(OwnerSet, f64)> = thing
-            .seen
-            .near
-            .iter()
-            .filter_map(|&(other, weight)| {
-                let owners = thing.candidates.narrowed((*answers.get(other)?)?)?;
-                Some((owners, self.parameters.coupling(Relation::Near { weight })))
-            })
-            .collect();
-        let prior = |sizes: SizePrior| {
-            let mut prior = thing.candidates.own(opinion, sizes, &self.parameters);
-            with_relatives(thing.candidates.sets(), &mut prior, &couplings);
-            prior
-        };
-        match &thing.use_of_it {
-            Use::Accounts(accounts) => Weighed::ByHabits(ByHabits {
-                candidates: &thing.candidates,
-                accounts,
-                priors: SIZES.map(prior).into(),
-                change_of_hands: self.parameters.change_of_hands,
-            }),
-            Use::Bare(use_of_it) => {
-                let prior = prior(self.parameters.sizes());
-                Weighed::Alone(from_logarithms(
-                    logarithms(&prior).zip(use_of_it).map(|(prior, used)| prior + used),
-                ))
-            }
-        }
+    fn basis(&self, place: usize, answers: &[Option<OwnerSet>]) -> Basis {
+        let thing = &self.things[place];
+        let near = thing.seen.near.iter();
+        let couplings = near.filter_map(|&(other, weight)| {
+            let owners = thing.candidates.narrowed((*answers.get(other)?)?)?;
+            Some((owners, self.parameters.coupling(Relation::Near { weight })))
+        });
+        Basis { answer: answers[place], couplings: couplings.collect() }
+    }
+
+    fn weigh(&self, place: usize, basis: Basis, opinion: Opinion<'_>) -> Weighed {
+        Weighed::new(&self.things[place], basis, opinion, &self.parameters)
     }
 
     /// p(habits | all things, all answers) over the grid, without what is negligible. Where habits are not learnt every
     /// point is as probable as any other.
-    fn habits(&self, weighed: &[Weighed<'_>], answers: &[Option<OwnerSet>]) -> Vec<(Habits, f64)> {
-        let logarithms: Vec<f64> = match self.parameters.habits {
-            HabitSource::Ordinary => vec![0.0; habits::HABITS],
-            HabitSource::Learnt => Habits::all()
-                .map(|habits| {
-                    weighed
-                        .iter()
-                        .zip(answers)
-                        .map(|(thing, &answer)| thing.log_evidence(habits, answer))
-                        .sum()
-                })
-                .collect(),
-        };
+    fn habits(&self, weighed: &[Arc<Weighed>]) -> Vec<(Habits, f64)> {
+        let mut logarithms = vec![0.0; habits::HABITS];
+        if self.parameters.habits == HabitSource::Learnt {
+            for thing in weighed {
+                logarithms.iter_mut().zip(thing.log_evidence()).for_each(|(sum, of_thing)| *sum += of_thing);
+            }
+        }
         let probabilities = from_logarithms(logarithms.into_iter());
         Habits::all().zip(probabilities).filter(|&(_, probability)| probability > NEGLIGIBLE).collect()
     }
 
-    /// For every set of every thing, how much likelier or less its looks make it. Only things whose owners were named, or
-    /// are nearly sure, speak for the looks of others.
-    fn by_looks(&self, beliefs: &[Vec<f64>], answers: &[Option<OwnerSet>]) -> Vec<Vec<f64>> {
+    /// For every set of every thing, how much likelier or less its looks make it; nothing where looks tell nothing. Only
+    /// things whose owners were named, or are nearly sure, speak for the looks of others.
+    fn by_looks(&self, beliefs: &[Arc<Vec<f64>>], answers: &[Option<OwnerSet>]) -> Vec<Vec<f64>> {
+        if self.parameters.resemblance <= 0.0 || self.things.iter().all(|thing| thing.seen.alike.is_empty()) {
+            return Vec::new();
+        }
         let known: Vec<Option<OwnerSet>> = self
             .things
             .iter()
@@ -242,10 +256,7 @@ impl HomeEvidence {
             .zip(answers)
             .map(|((thing, belief), answer)| match *answer {
                 Some(owners) => Some(owners).filter(|owners| !owners.is_empty()),
-                None => {
-                    let (best, confidence) = thing.distribution(belief).best();
-                    (confidence >= SURE_ENOUGH).then_some(best)
-                }
+                None => thing.nearly_sure(belief),
             })
             .collect();
         let pairs = self.things.iter().enumerate().flat_map(|(place, thing)| {
@@ -257,25 +268,16 @@ impl HomeEvidence {
                 .filter(move |&&(other, _)| place < other)
                 .filter_map(move |&(other, cosine)| Some((known[place]?, known[other]?, cosine)))
         });
-        let resemblance = Resemblance::learn(pairs).filter(|_| self.parameters.resemblance > 0.0);
+        let Some(resemblance) = Resemblance::learn(pairs) else { return Vec::new() };
         self.things
             .iter()
             .map(|thing| {
-                let sets = thing.candidates.sets();
-                let Some(resemblance) = &resemblance else { return vec![1.0; sets.len()] };
-                let others: Vec<(OwnerSet, f64)> = thing
-                    .seen
-                    .alike
-                    .iter()
-                    .filter_map(|&(other, cosine)| Some((known[other]?, cosine)))
-                    .take(MOST_ALIKE)
-                    .collect();
-                let fits = sets.iter().map(|&set| {
-                    let owners = thing.candidates.widened(set);
-                    let of_each = others
-                        .iter()
-                        .map(|&(others, cosine)| resemblance.log_likelihood(owners, others, cosine));
-                    self.parameters.resemblance * of_each.sum::<f64>()
+                let others = thing.seen.alike.iter();
+                let others =
+                    others.filter_map(|&(other, cosine)| Some((known[other]?, cosine))).take(MOST_ALIKE);
+                let witnesses = resemblance.witnesses(others);
+                let fits = thing.candidates.sets().iter().map(|&set| {
+                    self.parameters.resemblance * witnesses.log_likelihood(thing.candidates.widened(set))
                 });
                 relative_weights(&fits.collect::<Vec<_>>())
             })
@@ -298,102 +300,48 @@ impl Thing {
         Self { seen, candidates, use_of_it }
     }
 
+    /// The best owner set, where it is nearly sure.
+    fn nearly_sure(&self, belief: &[f64]) -> Option<OwnerSet> {
+        let place = (0..belief.len()).find(|&place| belief[place] >= SURE_ENOUGH)?;
+        Some(self.candidates.widened(self.candidates.sets()[place]))
+    }
+
     /// The probabilities by members of the household. Whether what is everybody's is a latecomer's too is as likely as
     /// not.
     fn distribution(&self, belief: &[f64]) -> OwnerSetDistribution {
         let SeenThing { candidates, latecomers, .. } = self.seen;
         let entries = self.candidates.sets().iter().zip(belief);
         let mut weights: Vec<(OwnerSet, f64)> =
-            entries.map(|(&set, &weight)| (self.candidates.widened(set), log(weight))).collect();
-        let largest = weights.iter().map(|&(_, weight)| weight).fold(f64::NEG_INFINITY, f64::max);
+            entries.map(|(&set, &weight)| (self.candidates.widened(set), weight)).collect();
+        let largest = belief.iter().copied().fold(0.0, f64::max);
         if let Some(entry) = weights
             .iter_mut()
             .find(|(set, weight)| *set == candidates && *weight >= largest)
             .filter(|_| !latecomers.is_empty() && candidates.len() > 1)
         {
-            entry.1 -= log(2.0);
+            entry.1 /= 2.0;
             let with_them = (candidates.union(latecomers), entry.1);
             weights.push(with_them);
         }
-        OwnerSetDistribution::from_log_weights(weights)
+        OwnerSetDistribution::from_weights(weights)
     }
 }
 
-/// A thing with the prior that what is told gives it.
-enum Weighed<'a> {
-    /// Its belief depends on the habits of the home.
-    ByHabits(ByHabits<'a>),
-    /// It is judged by itself, and this is its belief.
-    Alone(Vec<f64>),
+/// Whether two distributions of habits differ by no more than what is left out of either.
+fn are_same(left: &[(Habits, f64)], right: &[(Habits, f64)]) -> bool {
+    left.len() == right.len()
+        && left
+            .iter()
+            .zip(right)
+            .all(|(left, right)| left.0 == right.0 && (left.1 - right.1).abs() <= NEGLIGIBLE)
 }
 
-struct ByHabits<'a> {
-    candidates: &'a Candidates,
-    accounts: &'a Accounts,
-    /// For each of [`SIZES`].
-    priors: Vec<Vec<f64>>,
-    change_of_hands: f64,
-}
-
-impl ByHabits<'_> {
-    /// π(S | habits)·p(use | S, habits) for every set, given that the habits are these.
-    fn joint(&self, habits: Habits) -> impl Iterator<Item = f64> {
-        let kept = &self.accounts.kept[habits.mistaken];
-        let lent = &self.accounts.lent[habits.lent()];
-        let changed = self.accounts.changed.get(habits.lending);
-        let change = if changed.is_some() { self.change_of_hands } else { 0.0 };
-        let prior = &self.priors[habits.sizes];
-        let (single, shared) = (habits.kept(1), habits.kept(2));
-        self.candidates.sets().iter().enumerate().map(move |(place, set)| {
-            let share = if set.len() == 1 { single } else { shared };
-            let stayed = share * kept[place] + (1.0 - share) * lent[place];
-            let moved = changed.map_or(0.0, |changed| changed[place]);
-            prior[place] * ((1.0 - change) * stayed + change * moved)
-        })
+/// A belief with what its looks say, where they say anything.
+fn seen_with<'a>(belief: &'a [f64], looks: Option<&Vec<f64>>) -> Cow<'a, [f64]> {
+    match looks {
+        None => Cow::Borrowed(belief),
+        Some(looks) => belief.iter().zip(looks).map(|(belief, looks)| belief * looks).collect(),
     }
-
-    /// ln p(use, answer | habits), up to a constant.
-    fn log_evidence(&self, habits: Habits, answer: Option<OwnerSet>) -> f64 {
-        let all: f64 = self.joint(habits).sum();
-        match answer {
-            None => log(all),
-            Some(owners) if owners.is_empty() => 0.0,
-            Some(owners) => {
-                let Some(owners) = self.candidates.narrowed(owners) else { return 0.0 };
-                let named =
-                    self.candidates.sets().iter().zip(self.joint(habits)).find(|&(&set, _)| set == owners);
-                named.map_or(0.0, |(_, named)| log(TRUST * named + (1.0 - TRUST) * all))
-            }
-        }
-    }
-}
-
-impl Weighed<'_> {
-    fn log_evidence(&self, habits: Habits, answer: Option<OwnerSet>) -> f64 {
-        match self {
-            Self::ByHabits(thing) => thing.log_evidence(habits, answer),
-            Self::Alone(_) => 0.0,
-        }
-    }
-
-    /// Σ_h p(h)·p(S | use, h) for every set.
-    fn belief(&self, habits: &[(Habits, f64)]) -> Vec<f64> {
-        let thing = match self {
-            Self::Alone(belief) => return belief.clone(),
-            Self::ByHabits(thing) => thing,
-        };
-        let mut belief = vec![0.0; thing.candidates.sets().len()];
-        for &(habits, probability) in habits {
-            let joint: Vec<f64> = thing.joint(habits).collect();
-            let all: f64 = joint.iter().sum();
-            belief.iter_mut().zip(joint).for_each(|(sum, joint)| *sum += probability * joint / all);
-        }
-        belief
-    }
-}
-
-fn product(left: &[f64], right: &[f64]) -> Vec<f64> {
-    left.iter().zip(right).map(|(left, right)| left * right).collect()
 }
 
 /// The weights whose natural logarithms these are, made to sum to 1.

@@ -4,6 +4,8 @@
 //! colour, in another everybody buys the same brand. So the home itself is asked: how alike are things of the same
 //! owners, of overlapping ones and of others, where these are known or nearly so?
 
+use std::collections::BTreeMap;
+
 use crate::owners::OwnerSet;
 
 /// The shrinkage of James and Stein: differences between the three kinds of pairs count by `1 − c/F`, with F the
@@ -74,9 +76,28 @@ impl Resemblance {
             .then(|| Self { means: means.map(|of_kind| mean + clear * (of_kind - mean)), variance })
     }
 
-    /// ln of how well it fits that a thing of these owners has this cosine with a thing of those, up to a constant.
-    pub(super) fn log_likelihood(&self, owners: OwnerSet, others: OwnerSet, cosine: f64) -> f64 {
-        let mean = self.means[Kinship::of(owners, others).place()];
-        -(cosine - mean).powi(2) / (2.0 * self.variance)
+    /// What things of known owners, which look like a thing by these cosines, have to say of its owners.
+    pub(super) fn witnesses(&self, others: impl Iterator<Item = (OwnerSet, f64)>) -> Witnesses {
+        let mut by_owners: BTreeMap<OwnerSet, [f64; 3]> = BTreeMap::new();
+        for (owners, cosine) in others {
+            let sums = by_owners.entry(owners).or_default();
+            for (sum, mean) in sums.iter_mut().zip(self.means) {
+                *sum -= (cosine - mean).powi(2) / (2.0 * self.variance);
+            }
+        }
+        Witnesses { by_owners: by_owners.into_iter().collect() }
+    }
+}
+
+/// For every owner set of known things, ln of how well their looks fit a thing whose owners are the same, overlapping or
+/// others.
+pub(super) struct Witnesses {
+    by_owners: Vec<(OwnerSet, [f64; 3])>,
+}
+
+impl Witnesses {
+    /// ln of how well the looks fit that a thing has these owners, up to a constant.
+    pub(super) fn log_likelihood(&self, owners: OwnerSet) -> f64 {
+        self.by_owners.iter().map(|&(others, fits)| fits[Kinship::of(owners, others).place()]).sum()
     }
 }

@@ -145,14 +145,38 @@ proptest! {
     ) {
         let certain = certain.intersection(everyone(members));
         let told = vec![Told { answer: None, opinion: Opinion::None }; users.len()];
-        let answers = vec![None; users.len()];
         let home = HomeEvidence::new(seen(members, &users), defaults());
         let judgement = home.judge(&told);
-        let promised = home.least_confidence(&judgement, &answers, 0);
-        let without = home.reconsidered(&judgement, &answers, 0, Opinion::None);
-        let with = home.reconsidered(&judgement, &answers, 0, Opinion::Certain(certain));
+        let promised = home.least_confidence(&judgement, 0);
+        let without = home.reconsidered(&judgement, 0, Opinion::None);
+        let with = home.reconsidered(&judgement, 0, Opinion::Certain(certain));
         let best = without.best().0;
         prop_assert!(with.probability(best) >= promised - EXACT, "{} and {promised}", with.probability(best));
+    }
+}
+
+proptest! {
+    /// What is worked out again after an answer is what would have been worked out at once.
+    #[test]
+    fn judging_again_is_judging((members, users) in any_home(), owners in any_set(4), again in any_set(4)) {
+        let mut things = seen(members, &users);
+        for place in 1..things.len() {
+            things[place].near = vec![(place - 1, 0.9)];
+            things[place].alike = (0..place).map(|other| (other, 0.1 * ((place * other) % 3) as f64)).collect();
+        }
+        let home = HomeEvidence::new(things, defaults());
+        let mut told = vec![Told { answer: None, opinion: Opinion::None }; users.len()];
+        let mut judgement = home.judge(&told);
+        for (place, owners) in [owners, again].into_iter().enumerate().take(users.len()) {
+            told[place].answer = Some(owners.intersection(everyone(members)));
+            judgement = home.judge_again(&told, &judgement);
+            let at_once = home.judge(&told);
+            for (again, at_once) in judgement.distributions().iter().zip(at_once.distributions()) {
+                for (&(_, again), &(_, at_once)) in again.entries().iter().zip(at_once.entries()) {
+                    prop_assert!((again - at_once).abs() < 1e-7, "{again} and {at_once}");
+                }
+            }
+        }
     }
 }
 
