@@ -9,6 +9,7 @@ use coin::calibration::{
     CalibrationError, CalibrationSample, EMBEDDED_MODEL, EMBEDDED_SCORING, Levels, Provenance, Thresholds,
     calibrate,
 };
+use coin::evidence::EvidenceParameters;
 use coin::sharing::ShareThresholds;
 use coin_schemas::calibration::{CALIBRATION_VERSION, Calibration, History, NonconformityScore};
 use coin_schemas::episode::Truth;
@@ -239,7 +240,7 @@ pub struct CalibrateSettings {
 }
 
 /// How homes are scored.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct HomeScoring {
     /// Which part of their history the model sees.
     pub history: History,
@@ -247,6 +248,8 @@ pub struct HomeScoring {
     pub withheld: BTreeSet<Withheld>,
     /// How the scores are made.
     pub scoring: Scoring,
+    /// The terms of the evidence model.
+    pub parameters: EvidenceParameters,
     /// How many conversations go on at once in each home.
     pub concurrency: usize,
 }
@@ -271,6 +274,7 @@ pub async fn calibrate_on(
         history: settings.history,
         withheld: settings.withheld.clone(),
         scoring: settings.scoring,
+        parameters: EvidenceParameters::default(),
         concurrency: settings.concurrency,
     };
     let homes = score_homes(&settings.episodes, &scoring, model, scored).await?;
@@ -343,7 +347,8 @@ async fn score_loaded(
         max_questions: 0,
         reinference: Reinference::AnsweredContext,
     };
-    let course = Course::new(agent_settings, how.withheld.clone(), how.scoring, how.concurrency);
+    let course = Course::new(agent_settings, how.withheld.clone(), how.scoring, how.concurrency)
+        .with_parameters(how.parameters);
     let (outcome, _) = drive(&home, course, model, &mut Nobody, &mut Unobserved).await?;
     if outcome.stopped == Stopped::Budget {
         return Err(RunError::ScoredWithoutTheModel);

@@ -1,16 +1,19 @@
 //! The command line: what may be typed, and what it means.
 
+mod experiment;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use coin::calibration::{EMBEDDED_MODEL, Levels};
 use coin::conformal::{InvalidLevel, Level};
 use coin_schemas::calibration::{History, NonconformityScore};
-use coin_schemas::experiment::Method;
 use coin_schemas::report::{ContextSource, Estimator, Gate, Reinference, Scoring, Withheld};
 
+pub use experiment::{ExperimentArguments, MethodArgument};
+
 use crate::client::ServerAddress;
-use crate::generate::{GenerateArguments, HomerArguments, Protocol};
+use crate::generate::{GenerateArguments, HomerArguments};
 use crate::model::choice::ModelChoice;
 use crate::model::metered::TokenBudget;
 use crate::run::{Answers, CONCURRENCY, default_scoring};
@@ -62,90 +65,6 @@ pub enum Command {
     /// Make households with known owners
     #[command(subcommand)]
     Generate(GenerateCommand),
-}
-
-/// Arguments of `host experiment`.
-#[derive(Debug, Args)]
-#[command(after_help = EXPERIMENT_EXAMPLES)]
-pub struct ExperimentArguments {
-    /// Folders of the episodes to judge, with a truth file each
-    #[arg(long, value_name = "DIR", required = true, num_args = 1..)]
-    pub episode: Vec<PathBuf>,
-    /// Folders of other episodes to calibrate on, for every gate and ablation by itself [default: the calibrations that
-    /// come with the model]
-    #[arg(long, value_name = "DIR", num_args = 1..)]
-    pub calibrate_on: Vec<PathBuf>,
-    /// What to compare [default: everything]
-    #[arg(long, value_enum, value_name = "METHOD", value_delimiter = ',', num_args = 1..)]
-    pub methods: Vec<MethodArgument>,
-    /// How often each method goes through each episode
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..))]
-    pub trials: u64,
-    /// The seed of the first trial; the same seed gives the same figures, times aside
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Homes of these kinds on which the guarantees are measured
-    #[arg(long, value_enum, value_name = "PROTOCOL", value_delimiter = ',', num_args = 1.., default_value = "week")]
-    pub coverage_protocols: Vec<Protocol>,
-    /// How many homes of each kind; 0 measures nothing
-    #[arg(long, value_name = "N", default_value_t = 200)]
-    pub coverage_homes: usize,
-    /// Write results.json, tables.md, figures and index.html to this folder
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
-    /// Which model, and how it is used.
-    #[command(flatten)]
-    pub model: ModelArguments,
-    /// Say nothing while working
-    #[arg(long)]
-    pub quiet: bool,
-}
-
-const EXPERIMENT_EXAMPLES: &str = "\
-Examples:
-  host experiment --episode fixtures/episodes/small-house --out RESULTS
-      All nine methods, ten trials; open RESULTS/index.html afterwards.
-  host experiment --episode HOME1 HOME2 --methods coin,coin_paper,frequency --trials 3 --coverage-homes 0 --out RESULTS
-      Some methods on homes of your own.";
-
-/// A method as it is typed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub enum MethodArgument {
-    /// COIN with conformal risk control
-    Coin,
-    /// COIN with the paper's gate and scheme of inference
-    CoinPaper,
-    /// Active Ownership Learning
-    Actowl,
-    /// The model with the map alone
-    NlmapLlm,
-    /// Who used it last
-    LastUser,
-    /// Who used it most often
-    Frequency,
-    /// COIN that may not ask
-    NoQuestions,
-    /// COIN without roles and occupations
-    NoBackground,
-    /// COIN without usage
-    NoUsage,
-}
-
-impl From<MethodArgument> for Method {
-    fn from(argument: MethodArgument) -> Self {
-        match argument {
-            MethodArgument::Coin => Self::Coin,
-            MethodArgument::CoinPaper => Self::CoinPaper,
-            MethodArgument::Actowl => Self::Actowl,
-            MethodArgument::NlmapLlm => Self::NlmapLlm,
-            MethodArgument::LastUser => Self::LastUser,
-            MethodArgument::Frequency => Self::Frequency,
-            MethodArgument::NoQuestions => Self::NoQuestions,
-            MethodArgument::NoBackground => Self::NoBackground,
-            MethodArgument::NoUsage => Self::NoUsage,
-        }
-    }
 }
 
 /// What can be generated.

@@ -285,6 +285,9 @@ fn calibrate(arguments: &CalibrateArguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// How many homes of a kind are judged without each term, as many as the method's own table has.
+const JUDGED_BY_TERMS: usize = 12;
+
 fn experiment(arguments: &ExperimentArguments) -> Result<(), Failure> {
     check_folder(&arguments.out).map_err(|error| failure(true, &error))?;
     let methods: Vec<MethodArgument> = match arguments.methods.is_empty() {
@@ -304,6 +307,11 @@ fn experiment(arguments: &ExperimentArguments) -> Result<(), Failure> {
         seed: arguments.seed,
         concurrency: arguments.model.concurrency,
         coverage: coverage.filter(|homes| homes.households > 0).collect(),
+        kinds: arguments
+            .terms
+            .iter()
+            .map(|&protocol| CoverageHomes { protocol, households: JUDGED_BY_TERMS })
+            .collect(),
     };
     let progress = if arguments.quiet { Progress::Quiet } else { Progress::Told };
     let printer = Printer::new(ResultFormat::Text, progress);

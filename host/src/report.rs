@@ -1,21 +1,24 @@
 //! The report: from a run's outcome, and the truth where there is one, to what is written down.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use coin::agent::ObjectState;
+use coin::agent::{AgentSettings, ObjectState};
 use coin::calibration::Thresholds;
 use coin::metrics::{Judged, summarise};
 use coin::owners::OwnerSet;
 use coin::roster::{Roster, RosterError};
+use coin::space::Neighbourhood;
 use coin_schemas::calibration::Calibration;
 use coin_schemas::episode::{Episode, EpisodeObject, Truth};
 use coin_schemas::household::{ObjectId, Score, Source, UsageType};
 use coin_schemas::report::{
-    Cost, CurvePoint, MetricsReport, MetricsSummary, ObjectReport, Parameters, Report,
+    Cost, CurvePoint, MetricsReport, MetricsSummary, ObjectReport, Parameters, Report, Scoring, Withheld,
 };
+use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS};
 
 use crate::driver::{Outcome, Standing};
 use crate::journal::named_parts;
+use crate::person::PersonKind;
 
 /// What a report says beside the outcome.
 #[derive(Debug)]
@@ -186,4 +189,29 @@ fn metrics(outcome: &Outcome, truth: Option<&Truth>, true_owners: Option<&TrueOw
         groups.into_iter().map(|(usage_type, group)| (usage_type, summarise(&group))).collect()
     });
     MetricsReport { overall: Some(summarise(&all)), by_usage_type, questions }
+}
+
+/// The settings that a result depends on.
+pub(crate) fn parameters(
+    agent: &AgentSettings,
+    person: PersonKind,
+    withheld: &BTreeSet<Withheld>,
+    scoring: Scoring,
+) -> Parameters {
+    let Neighbourhood { k, sigma, gamma, .. } = Neighbourhood::default();
+    Parameters {
+        k_near: k,
+        k_sim: DEFAULT_K as usize,
+        sigma,
+        gamma,
+        window_days: DEFAULT_WINDOW_DAYS,
+        epsilon_min: agent.share.least_score,
+        epsilon_in: agent.share.largest_spread,
+        epsilon_out: agent.share.least_gap,
+        max_questions: agent.max_questions,
+        reinference: agent.reinference,
+        withheld: withheld.clone(),
+        scoring,
+        answers: person.as_str().to_owned(),
+    }
 }

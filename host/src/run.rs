@@ -7,17 +7,17 @@ use std::time::Instant;
 use coin::agent::{Agent, AgentSettings, Reinference};
 use coin::calibration::{EMBEDDED_MODEL, EMBEDDED_SCORING, Thresholds, embedded_calibration, score_of};
 use coin::dialogue::Reading;
+use coin::evidence::EvidenceParameters;
 use coin::owners::OwnerSet;
 use coin::roster::RosterError;
 use coin::sharing::ShareThresholds;
-use coin::space::Neighbourhood;
 use coin_schemas::calibration::Calibration;
 use coin_schemas::episode::{Episode, Truth};
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::{ObjectId, Owners};
 use coin_schemas::journal::{JOURNAL_VERSION, JournalHeading};
-use coin_schemas::report::{Estimator, Gate, Parameters, Report, Scoring, Withheld};
-use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS, RetractAnswer, RetractAnswerResult};
+use coin_schemas::report::{Estimator, Gate, Report, Scoring, Withheld};
+use coin_schemas::tools::{RetractAnswer, RetractAnswerResult};
 use coin_server::episode::{EpisodeError, LoadedEpisode};
 use thiserror::Error;
 use tokio_util::sync::CancellationToken;
@@ -230,7 +230,7 @@ pub async fn run_episode(
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
         reinference: settings.reinference,
     };
-    let parameters = parameters(&agent_settings, person.kind(), &settings.withheld, scoring);
+    let parameters = report::parameters(&agent_settings, person.kind(), &settings.withheld, scoring);
     let mut course =
         Course::new(agent_settings, settings.withheld.clone(), scoring, settings.concurrency).until(stop);
     if let Some(db) = &settings.db {
@@ -323,6 +323,7 @@ pub(crate) struct Course {
     settings: AgentSettings,
     withheld: BTreeSet<Withheld>,
     scoring: Scoring,
+    parameters: EvidenceParameters,
     concurrency: usize,
     journal: Journal,
     /// The answers from before the run; those that the server knows, where nothing is said.
@@ -339,7 +340,13 @@ impl Course {
         concurrency: usize,
     ) -> Self {
         let (journal, stop) = (Journal::none(), CancellationToken::new());
-        Self { settings, withheld, scoring, concurrency, journal, answered_before: None, stop }
+        let parameters = EvidenceParameters::default();
+        Self { settings, withheld, scoring, parameters, concurrency, journal, answered_before: None, stop }
+    }
+
+    /// With other terms of the evidence model than the usual ones.
+    pub(crate) fn with_parameters(self, parameters: EvidenceParameters) -> Self {
+        Self { parameters, ..self }
     }
 
     fn until(self, stop: CancellationToken) -> Self {
@@ -386,7 +393,7 @@ pub(crate) async fn drive(
             answered.remove(object);
         }
     }
-    let Course { mut settings, withheld, scoring, concurrency, journal, stop, .. } = course;
+    let Course { mut settings, withheld, scoring, parameters, concurrency, journal, stop, .. } = course;
     let reinference = settings.reinference;
     // The evidence of one thing bears on every other one, and to weigh it again costs nothing.
     if scoring.estimator != Estimator::Model {
@@ -398,7 +405,8 @@ pub(crate) async fn drive(
     }
     let steps = Steps::new(model, &home.server, &home.roster, &withheld, scoring);
     let estimation =
-        Estimation::new(&steps, &home.things, withheld, home.episode.now, reinference).map_err(malformed)?;
+        Estimation::new(&steps, &home.things, withheld, home.episode.now, reinference, parameters)
+            .map_err(malformed)?;
     let (scored_by, _) = scored_by(model.name(), scoring);
     let driver = Driver {
         steps: &steps,
@@ -472,28 +480,4 @@ fn person(
 fn scripted(file: &Path, episode: &Episode) -> Result<ScriptedPerson, ScriptError> {
     let things: BTreeSet<ObjectId> = episode.objects.iter().map(|object| object.id.clone()).collect();
     ScriptedPerson::from_file(file, &things, &episode.users)
-}
-
-fn parameters(
-    agent: &AgentSettings,
-    person: PersonKind,
-    withheld: &BTreeSet<Withheld>,
-    scoring: Scoring,
-) -> Parameters {
-    let Neighbourhood { k, sigma, gamma, .. } = Neighbourhood::default();
-    Parameters {
-        k_near: k,
-        k_sim: DEFAULT_K as usize,
-        sigma,
-        gamma,
-        window_days: DEFAULT_WINDOW_DAYS,
-        epsilon_min: agent.share.least_score,
-        epsilon_in: agent.share.largest_spread,
-        epsilon_out: agent.share.least_gap,
-        max_questions: agent.max_questions,
-        reinference: agent.reinference,
-        withheld: withheld.clone(),
-        scoring,
-        answers: person.as_str().to_owned(),
-    }
 }

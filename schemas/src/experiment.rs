@@ -35,6 +35,9 @@ pub struct ExperimentResults {
     pub target_accuracy: f64,
     /// How often the guarantees held on homes that were made for that purpose; empty where none were.
     pub coverage: Vec<Coverage>,
+    /// What the terms of the evidence model are worth on fresh homes of some kinds; empty where none were made.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub kinds: Vec<KindResults>,
     /// The program and version that wrote the file.
     pub created_with: String,
 }
@@ -115,6 +118,60 @@ pub struct SurvivalStep {
     pub reached: usize,
     /// How many ended here without reaching it (censored).
     pub censored: usize,
+}
+
+/// A term of the evidence model that can be left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Term {
+    /// What common sense knows of the class and the people.
+    Class,
+    /// Whose the things beside it are, where a person said so.
+    Place,
+    /// Whose the things are that look like it, by as much as looks tell in this home.
+    Looks,
+    /// People who share a thing use it in turns.
+    Turns,
+    /// A thing may have had other owners before.
+    ChangeOfHands,
+    /// The habits of the home are learnt from all its things and answers.
+    Habits,
+}
+
+/// Fresh homes of one kind, judged with every term of the evidence model and without each.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct KindResults {
+    /// The kind of home.
+    pub protocol: String,
+    /// How many households were judged.
+    pub households: usize,
+    /// How many others of the same kind made the thresholds, anew for every row.
+    pub calibrated_on: usize,
+    /// How many things were judged.
+    pub things: usize,
+    /// The whole model first.
+    pub terms: Vec<TermResult>,
+    /// Subset Accuracy by question where everything is asked about, the least sure first.
+    pub asked_on: Vec<StepSpread>,
+    /// The same with the paper's gate and scheme.
+    pub paper: Vec<StepSpread>,
+    /// The same of somebody who asks about exactly what the whole model has wrong at once.
+    pub oracle: Vec<StepSpread>,
+}
+
+/// What came of the model without a term.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TermResult {
+    /// The term; `null` for the whole model.
+    pub left_out: Option<Term>,
+    /// Subset Accuracy before the first question.
+    pub at_once: Spread,
+    /// Subset Accuracy after the last.
+    pub in_the_end: Spread,
+    /// Questions.
+    pub questions: Spread,
 }
 
 /// What came of one method.

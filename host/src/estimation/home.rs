@@ -50,6 +50,7 @@ impl<'a> SeenHome<'a> {
         things: &'a BTreeMap<ObjectId, TaskObject>,
         withheld: BTreeSet<Withheld>,
         as_of: DateTime,
+        parameters: EvidenceParameters,
     ) -> Result<Self, RosterError> {
         Ok(Self {
             roster: Roster::new(steps.household())?,
@@ -57,7 +58,7 @@ impl<'a> SeenHome<'a> {
             things,
             withheld,
             as_of,
-            parameters: EvidenceParameters::default(),
+            parameters,
             seen: OnceCell::new(),
             judged: Mutex::new(None),
         })
@@ -68,41 +69,10 @@ impl<'a> SeenHome<'a> {
         &self.roster
     }
 
-    /// What the evidence makes of a thing, with the file of classes for common sense.
-    pub(super) async fn by_evidence(
-        &self,
-        thing: &ObjectId,
-        answers: &Answers,
-    ) -> Result<OwnerSetDistribution, StepError> {
+    /// The home with these answers.
+    pub(super) async fn with(&self, answers: &Answers) -> Result<JudgedHome<'_>, StepError> {
         let seen = self.seen().await?;
-        let place = seen.place(thing)?;
-        Ok(self.judged(seen, answers).distributions()[place].clone())
-    }
-
-    /// The same with a model's common sense in place of the file's, or with none.
-    pub(super) async fn with_opinion(
-        &self,
-        thing: &ObjectId,
-        answers: &Answers,
-        opinion: Option<&[Score]>,
-    ) -> Result<OwnerSetDistribution, StepError> {
-        let seen = self.seen().await?;
-        let place = seen.place(thing)?;
-        let opinion = opinion.map_or(Opinion::None, Opinion::OfModel);
-        let judged = self.judged(seen, answers);
-        Ok(seen.evidence.reconsidered(&judged, place, opinion))
-    }
-
-    /// The least probability that the best owner set of a thing can be left with, whatever a language model says of it.
-    pub(super) async fn least_confidence(
-        &self,
-        thing: &ObjectId,
-        answers: &Answers,
-    ) -> Result<f64, StepError> {
-        let seen = self.seen().await?;
-        let place = seen.place(thing)?;
-        let judged = self.judged(seen, answers);
-        Ok(seen.evidence.least_confidence(&judged, place))
+        Ok(JudgedHome { seen, judgement: self.judged(seen, answers) })
     }
 
     async fn seen(&self) -> Result<&Seen, StepError> {
@@ -137,6 +107,11 @@ impl<'a> SeenHome<'a> {
     /// The home with these answers, which is judged once as long as there is no other one.
     fn judged(&self, seen: &Seen, answers: &Answers) -> Arc<HomeJudgement> {
         let mut judged = self.judged.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((before, judged)) = &*judged
+            && before == answers
+        {
+            return Arc::clone(judged);
+        }
         let told: Vec<Told<'_>> = self
             .things
             .keys()
@@ -147,7 +122,6 @@ impl<'a> SeenHome<'a> {
             })
             .collect();
         let now = Arc::new(match &*judged {
-            Some((before, judged)) if before == answers => return Arc::clone(judged),
             Some((_, judged)) => seen.evidence.judge_again(&told, judged),
             None => seen.evidence.judge(&told),
         });
@@ -156,9 +130,36 @@ impl<'a> SeenHome<'a> {
     }
 }
 
-impl Seen {
+/// A home judged with some answers.
+pub(super) struct JudgedHome<'a> {
+    seen: &'a Seen,
+    judgement: Arc<HomeJudgement>,
+}
+
+impl JudgedHome<'_> {
+    /// What the evidence makes of a thing, with the file of classes for common sense.
+    pub(super) fn by_evidence(&self, thing: &ObjectId) -> Result<OwnerSetDistribution, StepError> {
+        Ok(self.judgement.distributions()[self.place(thing)?].clone())
+    }
+
+    /// The same with a model's common sense in place of the file's, or with none.
+    pub(super) fn with_opinion(
+        &self,
+        thing: &ObjectId,
+        opinion: Option<&[Score]>,
+    ) -> Result<OwnerSetDistribution, StepError> {
+        let opinion = opinion.map_or(Opinion::None, Opinion::OfModel);
+        Ok(self.seen.evidence.reconsidered(&self.judgement, self.place(thing)?, opinion))
+    }
+
+    /// The least probability that the best owner set of a thing can be left with, whatever a language model says of it.
+    pub(super) fn least_confidence(&self, thing: &ObjectId) -> Result<f64, StepError> {
+        Ok(self.seen.evidence.least_confidence(&self.judgement, self.place(thing)?))
+    }
+
     fn place(&self, thing: &ObjectId) -> Result<usize, StepError> {
-        self.places.get(thing).copied().ok_or_else(|| unusable(format!("thing {thing} is not in the home")))
+        let place = self.seen.places.get(thing).copied();
+        place.ok_or_else(|| unusable(format!("thing {thing} is not in the home")))
     }
 }
 

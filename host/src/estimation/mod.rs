@@ -12,6 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use coin::agent::{Inference, Parts};
 use coin::calibration::UNCALIBRATED_CONFIDENCE;
+use coin::evidence::EvidenceParameters;
 use coin::owners::OwnerSetDistribution;
 use coin::roster::RosterError;
 use coin_schemas::household::ObjectId;
@@ -65,9 +66,10 @@ impl<'a> Estimation<'a> {
         withheld: BTreeSet<Withheld>,
         as_of: DateTime,
         reinference: Reinference,
+        parameters: EvidenceParameters,
     ) -> Result<Self, RosterError> {
         Ok(Self {
-            home: SeenHome::new(steps, things, withheld.clone(), as_of)?,
+            home: SeenHome::new(steps, things, withheld.clone(), as_of, parameters)?,
             steps,
             withheld,
             as_of,
@@ -93,13 +95,16 @@ impl<'a> Estimation<'a> {
     /// Scores these things, of which there are at most [`Self::batch`], in the order given, with the answers so far.
     pub async fn infer(&self, things: &[&TaskObject], answers: &Answers) -> Vec<Estimate> {
         match (self.steps.scoring().estimator, self.steps.scoring().context) {
-            (Estimator::Evidence, _) => {
-                let mut estimates = Vec::with_capacity(things.len());
-                for thing in things {
-                    estimates.push(self.by_evidence(thing, answers).await.into());
+            (Estimator::Evidence, _) => match self.home.with(answers).await {
+                Ok(home) => things
+                    .iter()
+                    .map(|thing| home.by_evidence(&thing.id).map(|belief| self.inference(belief)).into())
+                    .collect(),
+                Err(error) => {
+                    let ids = things.iter().map(|thing| thing.id.clone()).collect();
+                    in_order(things, for_all(ids, error), BTreeMap::new())
                 }
-                estimates
-            }
+            },
             (Estimator::Model, ContextSource::Tools) => {
                 let mut estimates = Vec::with_capacity(things.len());
                 for thing in things {
@@ -114,7 +119,7 @@ impl<'a> Estimation<'a> {
 
     /// The evidence model by itself, with the file of classes for common sense.
     async fn by_evidence(&self, thing: &TaskObject, answers: &Answers) -> Result<Inference, StepError> {
-        Ok(self.inference(self.home.by_evidence(&thing.id, answers).await?))
+        Ok(self.inference(self.home.with(answers).await?.by_evidence(&thing.id)?))
     }
 
     async fn context(&self, thing: &TaskObject, examples: u32) -> Result<GivenContext, ServerError> {
@@ -257,7 +262,8 @@ impl<'a> Estimation<'a> {
             if self.memory.opinion(&thing.id).is_some() {
                 continue;
             }
-            match self.home.least_confidence(&thing.id, answers).await {
+            let least = self.home.with(answers).await.and_then(|home| home.least_confidence(&thing.id));
+            match least {
                 Ok(confidence) if confidence >= DECIDED => {}
                 Ok(_) => unheard.push(thing),
                 Err(error) => {
@@ -301,11 +307,12 @@ impl<'a> Estimation<'a> {
 
     async fn fuse(&self, thing: &TaskObject, answers: &Answers) -> Result<Inference, StepError> {
         let (opinion, remark) = self.memory.opinion(&thing.id).unzip();
+        let home = self.home.with(answers).await?;
         let fused = match &opinion {
-            Some(scores) => self.home.with_opinion(&thing.id, answers, Some(scores)).await?,
-            None => self.home.by_evidence(&thing.id, answers).await?,
+            Some(scores) => home.with_opinion(&thing.id, Some(scores))?,
+            None => home.by_evidence(&thing.id)?,
         };
-        let evidence = self.home.with_opinion(&thing.id, answers, None).await?;
+        let evidence = home.with_opinion(&thing.id, None)?;
         let parts = Parts { model: opinion, evidence: evidence.marginals(self.home.roster().len()) };
         Ok(Inference { parts: Some(parts), problem: remark.flatten(), ..self.inference(fused) })
     }

@@ -80,8 +80,15 @@ async fn passes(
     let home = home().await;
     let withheld = BTreeSet::new();
     let steps = Steps::new(model, &home.server, &home.roster, &withheld, scoring);
-    let estimation =
-        Estimation::new(&steps, &home.things, withheld.clone(), home.episode.now, reinference).unwrap();
+    let estimation = Estimation::new(
+        &steps,
+        &home.things,
+        withheld.clone(),
+        home.episode.now,
+        reinference,
+        EvidenceParameters::default(),
+    )
+    .unwrap();
     let things: Vec<&TaskObject> = home.things.values().collect();
     let mut results = Vec::new();
     let mut answers = Answers::new();

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use coin::calibration::{CalibrationError, CalibrationSample, Provenance, calibrate};
 use coin::conformal::{label_set, split};
+use coin::evidence::EvidenceParameters;
 use coin::statistics::clopper_pearson;
 use coin_schemas::calibration::{Calibration, History, NonconformityScore};
 use coin_schemas::experiment::{Coverage, Guarantee, Method};
@@ -128,6 +129,7 @@ async fn score(
         history: History::Whole,
         withheld: BTreeSet::new(),
         scoring: default_scoring(model.name()),
+        parameters: EvidenceParameters::default(),
         concurrency: settings.concurrency,
     };
     let scored = score_homes(homes, &how, model, || progress.step()).await?;
@@ -135,7 +137,13 @@ async fn score(
     Ok(scored)
 }
 
-fn make(protocol: Protocol, seed: u64, count: usize, folder: &Path) -> Result<Vec<PathBuf>, ExperimentError> {
+/// Makes so many homes of a kind with seeds from this one on.
+pub(super) fn make(
+    protocol: Protocol,
+    seed: u64,
+    count: usize,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, ExperimentError> {
     (0..count as u64)
         .map(|step| {
             let home = generate::generate(&RoutineSettings { seed: seed + step, protocol });

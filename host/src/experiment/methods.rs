@@ -132,7 +132,6 @@ async fn agent(
     seed: u64,
 ) -> Result<MethodOutcome, RunError> {
     let kind = variant.calibration(model.name());
-    let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
     let settings = AgentSettings {
         gate: variant.gate,
         thresholds: calibrations
@@ -140,11 +139,22 @@ async fn agent(
             .and_then(Option::as_ref)
             .map_or(Thresholds::Uncalibrated, Thresholds::from),
         share: ShareThresholds::default(),
-        max_questions: home.things.len(),
+        max_questions: judged.loaded.episode.objects.len(),
         reinference: variant.reinference,
     };
-    let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
     let course = Course::new(settings, kind.withheld, kind.scoring, concurrency);
+    carried_out(judged, model, course, seed).await
+}
+
+/// Runs the agent in a home of its own, from the captions to the last answer of a simulated person.
+pub(super) async fn carried_out(
+    judged: &JudgedHome,
+    model: &dyn ChatModel,
+    course: Course,
+    seed: u64,
+) -> Result<MethodOutcome, RunError> {
+    let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
+    let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
     let (outcome, cost) = drive(&home, course, model, &mut person, &mut Unobserved).await?;
     home.server.close().await;
     let owners = |standings: BTreeMap<ObjectId, Standing>| {

@@ -3,6 +3,7 @@
 
 mod actowl;
 mod coverage;
+mod kinds;
 mod methods;
 mod published;
 mod summary;
@@ -63,6 +64,8 @@ pub struct ExperimentSettings {
     pub concurrency: usize,
     /// On which homes the guarantees are measured.
     pub coverage: Vec<CoverageHomes>,
+    /// On which homes every term of the evidence model is left out.
+    pub kinds: Vec<CoverageHomes>,
 }
 
 /// Homes that are made to measure how often the guarantees hold.
@@ -179,6 +182,7 @@ pub async fn run(
     progress.end();
 
     let coverage = coverage::measure(settings, &model, progress).await?;
+    let kinds = kinds::measure(settings, &model, &calibrations, progress).await?;
     let calibration = calibrations.get(&default_kind(model.name())).cloned().flatten();
     Ok(ExperimentResults {
         episodes: homes.iter().map(|home| home.loaded.episode.name.clone()).collect(),
@@ -191,6 +195,7 @@ pub async fn run(
         oracle: summary::oracle(&runs),
         target_accuracy: TARGET_ACCURACY,
         coverage,
+        kinds,
         created_with: concat!("coin-host ", env!("CARGO_PKG_VERSION")).to_owned(),
     })
 }
@@ -244,6 +249,9 @@ async fn calibrations(
     let mut kinds: BTreeSet<CalibrationKind> =
         settings.methods.iter().filter_map(|&method| methods::calibration(method, model.name())).collect();
     kinds.insert(default_kind(model.name()));
+    if !settings.kinds.is_empty() {
+        kinds.extend(methods::calibration(Method::CoinPaper, model.name()));
+    }
     let mut calibrations = Calibrations::new();
     for kind in kinds {
         let calibration = match (settings.calibrate_on.is_empty(), model.name()) {

@@ -127,7 +127,7 @@ fn value(metric: Metric, summary: &MetricsSummary) -> f64 {
 }
 
 /// The mean at each step up to the longest run's last; a run that has stopped stays where it stopped.
-fn mean_curve(curves: &[&[f64]]) -> Vec<StepSpread> {
+pub(super) fn mean_curve(curves: &[&[f64]]) -> Vec<StepSpread> {
     let steps = curves.iter().map(|curve| curve.len()).max().unwrap_or(0);
     (0..steps)
         .map(|step| {
@@ -153,14 +153,19 @@ pub(super) fn oracle(runs: &[Run]) -> Vec<StepSpread> {
         .iter()
         .filter(|run| run.method == Method::NoQuestions)
         .filter_map(|run| {
-            let things = run.scored.run.overall.objects;
             let start = run.scored.curve.first()?;
-            let wrong = ((1.0 - start) * things as f64).round() as usize;
-            let after = |asked: usize| 1.0 - (wrong - asked) as f64 / things.max(1) as f64;
-            Some((0..=wrong).map(after).collect())
+            Some(wrong_ones_first(Some(*start), run.scored.run.overall.objects))
         })
         .collect();
     mean_curve(&curves.iter().map(Vec::as_slice).collect::<Vec<_>>())
+}
+
+/// The curve of somebody who asks about exactly the wrong ones of so many things; empty where it is not known where it
+/// starts.
+pub(super) fn wrong_ones_first(start: Option<f64>, things: usize) -> Vec<f64> {
+    let Some(start) = start else { return Vec::new() };
+    let wrong = ((1.0 - start) * things as f64).round() as usize;
+    (0..=wrong).map(|asked| 1.0 - (wrong - asked) as f64 / things.max(1) as f64).collect()
 }
 
 const METRICS: [Metric; 5] = [

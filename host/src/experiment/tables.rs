@@ -1,6 +1,10 @@
 //! The paper's tables of results (2 to 6 and 8) with the published figure beside ours, and two of our own: what the schemes cost side by
 //! side, and how often the guarantees held.
 
+mod terms;
+
+pub(super) use terms::table as of_terms;
+
 use coin_schemas::experiment::{
     Coverage, ExperimentResults, Guarantee, Method, MethodResults, Metric, MetricSpreads, MetricTest, Spread,
 };
@@ -51,6 +55,7 @@ pub fn tables(results: &ExperimentResults) -> Vec<Table> {
     tables.extend(side_by_side(results));
     tables.extend((!results.coverage.is_empty()).then(|| coverage(&results.coverage)));
     tables.push(kruskal_wallis(results));
+    tables.extend(results.kinds.iter().map(of_terms));
     tables
 }
 
@@ -227,7 +232,7 @@ fn side_by_side(results: &ExperimentResults) -> Option<Table> {
     Some(Table {
         title: "What the two schemes cost".to_owned(),
         note: "Means over the same runs. The paper's scheme infers every unasked thing again after every answer; ours \
-               infers again only what an answer can change, and asks less."
+               has the evidence weighed without a model, which is asked only where its word could settle something."
             .to_owned(),
         header: header(&["", "The paper's scheme", "Ours", "Ours / the paper's"]),
         rows: vec![

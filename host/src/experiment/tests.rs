@@ -46,6 +46,7 @@ fn settings(episodes: Vec<PathBuf>, methods: &[Method]) -> ExperimentSettings {
         seed: 5,
         concurrency: 4,
         coverage: Vec::new(),
+        kinds: Vec::new(),
     }
 }
 

@@ -70,7 +70,7 @@ pub fn write(results: &ExperimentResults, folder: &Path) -> Result<(), WriteErro
     let figure_folder = folder.join("figures");
     fs::create_dir_all(&figure_folder).map_err(failed(&figure_folder))?;
     for figure in &figures {
-        let path = figure_folder.join(figure.file_name);
+        let path = figure_folder.join(figure.file_name.as_ref());
         fs::write(&path, &figure.svg).map_err(failed(&path))?;
     }
     // The results come last: a folder that holds them is whole.

@@ -236,14 +236,21 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
             for &cut in &cuts {
                 let (earlier, later) = users.split_at(cut);
                 let (earlier, later) = (counts_of(earlier, members), counts_of(later, members));
-                let past = before.iter().map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, 0));
-                let past: Vec<f64> = past.collect();
+                let past: Vec<f64> = before
+                    .iter()
+                    .map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, 0))
+                    .collect();
                 let largest = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                let weighed: Vec<(OwnerSet, f64, f64)> = before
+                    .iter()
+                    .zip(&past)
+                    .map(|(&(set, prior), past)| (set, prior, prior * exp(past - largest)))
+                    .collect();
                 for (&set, sum) in sets.iter().zip(&mut sums) {
-                    let others = before.iter().zip(&past).filter(|((other, _), _)| *other != set);
-                    let (weight, weights) =
-                        others.fold((0.0, 0.0), |(weight, weights), (&(_, prior), past)| {
-                            (weight + prior * exp(past - largest), weights + prior)
+                    let others = weighed.iter().filter(|&&(other, ..)| other != set);
+                    let (weight, weights) = others
+                        .fold((0.0, 0.0), |(weight, weights), &(_, prior, of_it)| {
+                            (weight + of_it, weights + prior)
                         });
                     sum.push(
                         largest + log(weight / weights) + counting.log_likelihood(&later, set, lending, 0),

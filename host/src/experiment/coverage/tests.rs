@@ -90,6 +90,7 @@ fn the_mean_over_splits_is_a_share_of_the_things_that_were_left() {
         seed: 0,
         concurrency: 4,
         coverage: Vec::new(),
+        kinds: Vec::new(),
     };
     let means = over_splits(calibrated_on, judged, &settings, "a model").unwrap();
     // With α = .2 the threshold lets go of every tenth thing, and nothing wrong is as sure as what is right.

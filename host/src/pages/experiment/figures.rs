@@ -1,6 +1,10 @@
 //! The figures of an experiment: the paper's, and those that it lacks.
 
-use coin_schemas::experiment::{ExperimentResults, Guarantee, Method, MethodResults, StepSpread};
+use std::borrow::Cow;
+
+use coin_schemas::experiment::{
+    ExperimentResults, Guarantee, KindResults, Method, MethodResults, StepSpread,
+};
 use coin_schemas::household::UsageType;
 use maud::Markup;
 
@@ -15,7 +19,7 @@ use crate::pages::thousands;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {
     /// The file's name.
-    pub file_name: &'static str,
+    pub file_name: Cow<'static, str>,
     /// What it shows, in a few words.
     pub title: String,
     /// How to read it.
@@ -57,11 +61,22 @@ pub fn figures(results: &ExperimentResults) -> Vec<Figure> {
     figures.push(by_method(results));
     figures.extend(cost(results));
     figures.extend(coverage(results));
+    figures.extend(results.kinds.iter().map(of_kind));
     figures
 }
 
-fn figure(file_name: &'static str, title: &str, caption: impl Into<String>, svg: Markup) -> Figure {
-    Figure { file_name, title: title.to_owned(), caption: caption.into(), svg: svg.into_string() }
+fn figure(
+    file_name: impl Into<Cow<'static, str>>,
+    title: &str,
+    caption: impl Into<String>,
+    svg: Markup,
+) -> Figure {
+    Figure {
+        file_name: file_name.into(),
+        title: title.to_owned(),
+        caption: caption.into(),
+        svg: svg.into_string(),
+    }
 }
 
 fn look(method: Method) -> Look {
@@ -128,6 +143,35 @@ fn by_question(results: &ExperimentResults) -> Figure {
     let drawn = present(results, &ASKING).map(|(method, of)| series(method, &of.curve)).collect();
     let caption = format!("The methods that ask, over all things. {BAND}");
     figure("accuracy-by-question.svg", title, caption, curves(title, drawn))
+}
+
+/// What a question is worth on homes of a kind: whoever goes on asking, the paper's gate, and who knows what is wrong.
+fn of_kind(kind: &KindResults) -> Figure {
+    let title = format!("Accuracy by question: {}", kind.protocol);
+    let named = |name: &str, place: usize, curve: &[StepSpread]| Series {
+        name: name.to_owned(),
+        look: Look(place),
+        shape: if curve.len() == 1 { Shape::Level } else { Shape::Line },
+        points: points(curve),
+        strokes: Vec::new(),
+    };
+    let drawn = vec![
+        named("COIN, asking on", 0, &kind.asked_on),
+        named(method_name(Method::CoinPaper), 1, &kind.paper),
+        named("oracle: the wrong ones first", 5, &kind.oracle),
+    ];
+    let stops = kind.terms.iter().find(|row| row.left_out.is_none()).map_or(String::new(), |row| {
+        format!(
+            " The default gate stops after {:.1} questions on average, with {:.3} right.",
+            row.questions.mean, row.in_the_end.mean
+        )
+    });
+    let caption = format!(
+        "{} homes that were made for this. COIN asks about everything here, the least sure first.{stops} {BAND}",
+        kind.households
+    );
+    let svg = curves(&title, drawn);
+    figure(format!("curve-{}.svg", kind.protocol), &title, caption, svg)
 }
 
 fn by_question_and_type(

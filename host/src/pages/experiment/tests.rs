@@ -20,6 +20,7 @@ fn nothing(name: &str) -> ExperimentResults {
         oracle: Vec::new(),
         target_accuracy: 0.95,
         coverage: Vec::new(),
+        kinds: Vec::new(),
         created_with: "a test".to_owned(),
     }
 }
