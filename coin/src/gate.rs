@@ -41,6 +41,14 @@ pub fn compare_ids(left: &ObjectId, right: &ObjectId) -> Ordering {
     }
 }
 
+/// Puts ids in the order of [`compare_ids`], and reads each as a number only once.
+pub fn sort_ids(ids: &mut [ObjectId]) {
+    ids.sort_by_cached_key(|id| match id.as_str().parse::<u64>() {
+        Ok(number) => (false, number, id.clone()),
+        Err(_) => (true, 0, id.clone()),
+    });
+}
+
 /// Which of two things is asked about first. The paper's gate: the larger cp_s, then the larger Γ, then the
 /// lower id. The others: the less probable best owner set, then the lower id.
 pub fn compare_priority(

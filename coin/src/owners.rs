@@ -137,10 +137,16 @@ pub enum DistributionError {
 }
 
 /// Probabilities of owner sets; they sum to 1. The default, without a set, is of a household without members.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct OwnerSetDistribution {
     /// Shared, because a belief is told to many and changes as a whole.
     entries: Arc<[(OwnerSet, f64)]>,
+}
+
+impl PartialEq for OwnerSetDistribution {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.entries, &other.entries) || self.entries == other.entries
+    }
 }
 
 impl OwnerSetDistribution {

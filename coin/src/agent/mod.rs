@@ -21,7 +21,7 @@ pub use state::{Known, KnownSource, NOTABLE, ObjectState};
 
 use crate::calibration::Thresholds;
 use crate::dialogue::Reading;
-use crate::gate::{Candidate, compare_ids, first_to_ask, wants_to_ask};
+use crate::gate::{Candidate, first_to_ask, sort_ids, wants_to_ask};
 use crate::owners::OwnerSet;
 use crate::sharing::ShareThresholds;
 
@@ -185,7 +185,7 @@ impl Agent {
             })
             .map(|(object, _)| object.clone())
             .collect();
-        objects.sort_by(compare_ids);
+        sort_ids(&mut objects);
         self.known = known;
         if objects.is_empty() {
             return self.ask_or_finish();
@@ -242,7 +242,7 @@ impl Agent {
                 Err(reason) => state.apply_failure(reason),
             }
         }
-        recorded.sort_by(compare_ids);
+        sort_ids(&mut recorded);
         match recorded.is_empty() {
             true => Vec::new(),
             false => vec![Effect::Record { objects: recorded }],
@@ -310,7 +310,7 @@ impl Agent {
                 object.clone()
             })
             .collect();
-        objects.sort_by(compare_ids);
+        sort_ids(&mut objects);
         let record = (!objects.is_empty()).then_some(Effect::Record { objects });
         record.into_iter().chain([Effect::Finish { stopped }]).collect()
     }

@@ -150,13 +150,17 @@ impl ObjectState {
     /// is by [`NOTABLE`].
     pub fn is_news(&self, inference: &Inference) -> bool {
         self.belief.as_ref().is_none_or(|belief| {
-            let ((owners, confidence), before) = (inference.distribution.best(), &belief.inference);
+            let before = &belief.inference;
+            let heard = |inference: &Inference| inference.parts.as_ref().map(|parts| parts.model.clone());
+            if inference.problem != before.problem || heard(inference) != heard(before) {
+                return true;
+            }
+            if inference.distribution == before.distribution {
+                return false;
+            }
+            let (owners, confidence) = inference.distribution.best();
             let (owners_before, confidence_before) = before.distribution.best();
-            owners != owners_before
-                || (confidence - confidence_before).abs() >= NOTABLE
-                || (inference.problem != before.problem)
-                || (inference.parts.as_ref().map(|parts| &parts.model)
-                    != before.parts.as_ref().map(|parts| &parts.model))
+            owners != owners_before || (confidence - confidence_before).abs() >= NOTABLE
         })
     }
 

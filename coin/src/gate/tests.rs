@@ -83,6 +83,10 @@ proptest! {
         if compare_ids(&a, &b) != Ordering::Greater && compare_ids(&b, &c) != Ordering::Greater {
             prop_assert_ne!(compare_ids(&a, &c), Ordering::Greater);
         }
+        let (mut sorted, mut compared) = ([c.clone(), b.clone(), a.clone()], [a, b, c]);
+        sort_ids(&mut sorted);
+        compared.sort_by(compare_ids);
+        prop_assert_eq!(sorted, compared);
     }
 }
 

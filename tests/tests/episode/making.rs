@@ -77,7 +77,6 @@ fn a_folder_with_something_else_in_it_is_left_alone() {
 #[test]
 fn homes_are_made_calibrated_on_and_the_thresholds_used() {
     let folder = tempfile::tempdir().unwrap();
-    let homes = folder.path().join("homes");
     generate("week", 100, &homes, &["--count", "3"]).expect_code(0);
     let mut names: Vec<_> = fs::read_dir(&homes).unwrap().map(|entry| entry.unwrap().path()).collect();
     names.sort();
@@ -223,28 +222,28 @@ fn the_built_in_calibrations_are_what_their_commands_make() {
     }
     let commands = commands_of_the_built_in_calibrations();
     let folder = tempfile::tempdir().unwrap();
-    let homes = folder.path().join("homes");
     let mut made = BTreeSet::new();
     for command in commands {
         assert_eq!(command[0], "host");
         let mut program = Program::new("host").patience(std::time::Duration::from_secs(1_200));
         for word in &command[1..] {
-            program = match word.as_str() {
-                "HOMES" => program.arg(&homes),
+            // Folders are named in capitals.
+            let is_folder =
+                |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_uppercase());
+            program = match (word.strip_suffix("/*"), word.strip_prefix("fixtures/calibrations/")) {
                 // What a shell makes of the star.
-                "HOMES/*" => {
-                    let mut found: Vec<_> =
-                        fs::read_dir(&homes).unwrap().map(|entry| entry.unwrap().path()).collect();
+                (Some(homes), _) => {
+                    let homes = fs::read_dir(folder.path().join(homes)).unwrap();
+                    let mut found: Vec<_> = homes.map(|entry| entry.unwrap().path()).collect();
                     found.sort();
                     program.args(found)
                 }
-                word => match word.strip_prefix("fixtures/calibrations/") {
-                    Some(name) => {
-                        made.insert(name.to_owned());
-                        program.arg(folder.path().join(name))
-                    }
-                    None => program.arg(word),
-                },
+                (None, Some(name)) => {
+                    made.insert(name.to_owned());
+                    program.arg(folder.path().join(name))
+                }
+                (None, None) if is_folder(word) => program.arg(folder.path().join(word)),
+                (None, None) => program.arg(word),
             };
         }
         program.run().expect_code(0);

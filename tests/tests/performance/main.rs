@@ -4,6 +4,7 @@
 
 mod calls;
 mod history;
+mod large_home;
 mod observing;
 mod pipe;
 mod writing;

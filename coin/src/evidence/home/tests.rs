@@ -160,9 +160,9 @@ proptest! {
     #[test]
     fn judging_again_is_judging((members, users) in any_home(), owners in any_set(4), again in any_set(4)) {
         let mut things = seen(members, &users);
-        for place in 1..things.len() {
-            things[place].near = vec![(place - 1, 0.9)];
-            things[place].alike = (0..place).map(|other| (other, 0.1 * ((place * other) % 3) as f64)).collect();
+        for (place, thing) in things.iter_mut().enumerate().skip(1) {
+            thing.near = vec![(place - 1, 0.9)];
+            thing.alike = (0..place).map(|other| (other, 0.1 * ((place * other) % 3) as f64)).collect();
         }
         let home = HomeEvidence::new(things, defaults());
         let mut told = vec![Told { answer: None, opinion: Opinion::None }; users.len()];
