@@ -19,7 +19,7 @@ use crate::client::{ServerError, ToolServer};
 const EXAMPLES_ON_A_PAGE: u32 = 3;
 
 /// How many things are asked for at once.
-pub(crate) const CONCURRENCY: usize = 4;
+const CONCURRENCY: usize = 4;
 
 /// The evidence about one thing, as a model would have been told it at the end of the run.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use coin::agent::{Agent, Event, Inference};
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::ObjectId;
-use coin_schemas::report::{Estimator, Stopped};
+use coin_schemas::report::Stopped;
 use futures::StreamExt;
 use tokio::sync::Semaphore;
 
@@ -73,8 +73,7 @@ impl Driver<'_> {
                 let inference = outcome?;
                 // What was judged without the model for want of tokens is judged by it when the run goes on. What no
                 // model is paid for is worked out again.
-                let is_free = self.steps.scoring().estimator == Estimator::Evidence;
-                if !(is_free || self.steps.is_out_of_budget() && inference.problem.is_some()) {
+                if !(self.is_free() || self.steps.is_out_of_budget() && inference.problem.is_some()) {
                     self.journal.inferred(&thing.id, &inference, self.roster)?;
                 }
                 events.push(self.note(&thing.id, inference, agent)?);

@@ -4,7 +4,7 @@
 mod ask;
 mod infer;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use coin::agent::{Agent, Effect, Event, ObjectState, UnexpectedEvent};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
@@ -12,8 +12,9 @@ use coin::roster::Roster;
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::{ObjectId, Source};
 use coin_schemas::model::{OwnerSetProbability, TaskObject};
-use coin_schemas::report::{QuestionReport, Stopped};
+use coin_schemas::report::{Estimator, QuestionReport, Stopped};
 use coin_schemas::tools::{RecordScores, RecordScoresResult};
+use futures::{StreamExt, TryStreamExt};
 use jiff::civil::DateTime;
 use thiserror::Error;
 use tokio_util::sync::CancellationToken;
@@ -27,7 +28,10 @@ use crate::person::{Person, PersonError};
 use crate::steps::{StepError, Steps};
 
 /// Owner sets that are less probable are not stored. All of them together are less than a server takes for rounding.
-const WORTH_STORING: f64 = 1e-10;
+const WORTH_STORING: f64 = 1e-9;
+
+/// How many beliefs are on their way to the server at once.
+const STORED_AT_ONCE: usize = 16;
 
 /// Why a run could not be carried through.
 #[derive(Debug, Error)]
@@ -159,12 +163,21 @@ struct Run<'a> {
     history: Vec<BTreeMap<ObjectId, Standing>>,
     /// The agent as it was when each question was open, so that an answer can be taken back.
     open: Vec<Agent>,
+    /// The things whose beliefs are to be stored when the run ends.
+    unstored: BTreeSet<ObjectId>,
 }
 
 impl<'a> Driver<'a> {
     /// Carries the agent from its start to its end.
     pub async fn run(self, agent: Agent) -> Result<Outcome, DriveError> {
-        let run = Run { driver: self, agent, questions: Vec::new(), history: Vec::new(), open: Vec::new() };
+        let run = Run {
+            driver: self,
+            agent,
+            questions: Vec::new(),
+            history: Vec::new(),
+            open: Vec::new(),
+            unstored: BTreeSet::new(),
+        };
         run.finish().await
     }
 }
@@ -181,6 +194,8 @@ impl Run<'_> {
                         events.extend(self.driver.infer(pass, objects, &self.agent).await?);
                         pass += 1;
                     }
+                    // What no model was paid for is worked out again wherever it is needed, and stored in the end.
+                    Effect::Record { objects } if self.driver.is_free() => self.unstored.extend(objects),
                     Effect::Record { objects } => self.driver.record(&self.agent, &objects).await?,
                     Effect::Ask { object } => {
                         let standings = self.driver.standings(&self.agent);
@@ -189,6 +204,13 @@ impl Run<'_> {
                         events.push(self.ask(&object).await?);
                     }
                     Effect::Finish { stopped } => {
+                        let mut unstored = std::mem::take(&mut self.unstored);
+                        // What a person said stands by itself.
+                        unstored.retain(|object| {
+                            self.agent.object(object).is_some_and(|state| state.answer().is_none())
+                        });
+                        let unstored: Vec<ObjectId> = unstored.into_iter().collect();
+                        self.driver.record(&self.agent, &unstored).await?;
                         // Where nobody was left to ask, the state before the open question is the last one.
                         if self.history.len() == self.questions.len() {
                             let standings = self.driver.standings(&self.agent);
@@ -221,6 +243,11 @@ fn likely_sets(distribution: &OwnerSetDistribution, roster: &Roster) -> Vec<Owne
 }
 
 impl Driver<'_> {
+    /// Whether scores are made without a model that is paid for.
+    fn is_free(&self) -> bool {
+        self.steps.scoring().estimator == Estimator::Evidence
+    }
+
     fn standings(&self, agent: &Agent) -> BTreeMap<ObjectId, Standing> {
         let unknown = ObjectState::default();
         self.things
@@ -236,22 +263,24 @@ impl Driver<'_> {
     }
 
     async fn record(&mut self, agent: &Agent, objects: &[ObjectId]) -> Result<(), DriveError> {
-        for object in objects {
-            let Some(state) = agent.object(object) else { continue };
-            let (Some(scores), Some(distribution)) = (state.scores(), state.distribution()) else { continue };
-            let arguments = RecordScores {
+        let beliefs = objects.iter().filter_map(|object| {
+            let state = agent.object(object)?;
+            let (scores, distribution) = (state.scores()?, state.distribution()?);
+            let scores = self.roster.scores(scores).into_iter();
+            Some(RecordScores {
                 object_id: object.to_string(),
-                scores: self
-                    .roster
-                    .scores(scores)
-                    .into_iter()
-                    .map(|(name, score)| (name.to_string(), score.value()))
-                    .collect(),
+                scores: scores.map(|(name, score)| (name.to_string(), score.value())).collect(),
                 owner_sets: Some(likely_sets(distribution, self.roster)),
                 model: Some(self.model.to_owned()),
-            };
-            let _: RecordScoresResult = self.server.call("record_scores", &arguments).await?;
-        }
+            })
+        });
+        let beliefs: Vec<RecordScores> = beliefs.collect();
+        let server = self.server;
+        futures::stream::iter(beliefs)
+            .map(|belief| async move { server.call::<_, RecordScoresResult>("record_scores", &belief).await })
+            .buffered(STORED_AT_ONCE)
+            .try_for_each(|_| async { Ok(()) })
+            .await?;
         Ok(())
     }
 }

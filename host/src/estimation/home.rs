@@ -15,8 +15,11 @@ use futures::{StreamExt, TryStreamExt};
 use jiff::civil::DateTime;
 use tokio::sync::OnceCell;
 
-use crate::evidence::{CONCURRENCY, whole_context};
+use crate::evidence::whole_context;
 use crate::steps::{StepError, Steps};
+
+/// How many things are fetched at once, so that neither this program nor the server waits for the other.
+const FETCHED_AT_ONCE: usize = 16;
 
 /// Whom people named as owners so far, by thing; nobody where somebody outside the household owns it.
 pub type Answers = BTreeMap<ObjectId, OwnerSet>;
@@ -86,7 +89,7 @@ impl<'a> SeenHome<'a> {
             .map(|thing| async move {
                 whole_context(self.steps.server(), &thing, self.as_of, &self.withheld).await
             })
-            .buffered(CONCURRENCY)
+            .buffered(FETCHED_AT_ONCE)
             .try_collect()
             .await?;
         let places: BTreeMap<ObjectId, usize> = self.things.keys().cloned().zip(0..).collect();

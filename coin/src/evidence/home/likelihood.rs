@@ -246,15 +246,22 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
                     .zip(&past)
                     .map(|(&(set, prior), past)| (set, prior, prior * exp(past - largest)))
                     .collect();
-                for (&set, sum) in sets.iter().zip(&mut sums) {
-                    let others = weighed.iter().filter(|&&(other, ..)| other != set);
+                let log_mean_of = |left_out: Option<OwnerSet>| {
+                    let others = weighed.iter().filter(|&&(other, ..)| Some(other) != left_out);
                     let (weight, weights) = others
                         .fold((0.0, 0.0), |(weight, weights), &(_, prior, of_it)| {
                             (weight + of_it, weights + prior)
                         });
-                    sum.push(
-                        largest + log(weight / weights) + counting.log_likelihood(&later, set, lending, 0),
-                    );
+                    largest + log(weight / weights)
+                };
+                let of_all = log_mean_of(None);
+                for (&set, sum) in sets.iter().zip(&mut sums) {
+                    // Only one person, or everybody, can have owned it before.
+                    let of_others = match set.len() == 1 || set == everybody {
+                        true => log_mean_of(Some(set)),
+                        false => of_all,
+                    };
+                    sum.push(of_others + counting.log_likelihood(&later, set, lending, 0));
                 }
             }
             sums.iter().map(|sum| log_mean(sum)).collect()
