@@ -77,6 +77,7 @@ fn a_folder_with_something_else_in_it_is_left_alone() {
 #[test]
 fn homes_are_made_calibrated_on_and_the_thresholds_used() {
     let folder = tempfile::tempdir().unwrap();
+    let homes = folder.path().join("homes");
     generate("week", 100, &homes, &["--count", "3"]).expect_code(0);
     let mut names: Vec<_> = fs::read_dir(&homes).unwrap().map(|entry| entry.unwrap().path()).collect();
     names.sort();
