@@ -1,10 +1,12 @@
 //! The home as the evidence model sees it: fetched once in a run, and judged as a whole after every answer.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZero;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
 use coin::common_sense::{Expectation, expect};
-use coin::evidence::home::{HomeEvidence, HomeJudgement, SeenThing, Told};
+use coin::evidence::home::{HomeEvidence, HomeJudgement, SeenThing, ThingEvidence, Told};
 use coin::evidence::{EvidenceParameters, Opinion};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::roster::{Roster, RosterError};
@@ -20,6 +22,9 @@ use crate::steps::{StepError, Steps};
 
 /// How many things are fetched at once, so that neither this program nor the server waits for the other.
 const FETCHED_AT_ONCE: usize = 16;
+
+/// Fewer things are worked out sooner than a thread is started.
+const WORTH_A_THREAD: usize = 64;
 
 /// Whom people named as owners so far, by thing; nobody where somebody outside the household owns it.
 pub type Answers = BTreeMap<ObjectId, OwnerSet>;
@@ -101,7 +106,7 @@ impl<'a> SeenHome<'a> {
         let things = things.collect::<Result<Vec<_>, _>>().map_err(unusable)?;
         let expectations = self.things.values().map(|thing| expect(thing.class.as_str(), &self.roster));
         Ok(Seen {
-            evidence: HomeEvidence::new(things, self.parameters),
+            evidence: HomeEvidence::of(worked_out(things, self.parameters), self.parameters),
             expectations: expectations.collect(),
             places,
         })
@@ -164,6 +169,30 @@ impl JudgedHome<'_> {
         let place = self.seen.places.get(thing).copied();
         place.ok_or_else(|| unusable(format!("thing {thing} is not in the home")))
     }
+}
+
+/// Works out what was seen of each thing. Where there are many, several threads share the work; the result is the same.
+fn worked_out(mut seen: Vec<SeenThing>, parameters: EvidenceParameters) -> Vec<ThingEvidence> {
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    let share = seen.len().div_ceil(threads).max(WORTH_A_THREAD);
+    let mut shares = Vec::new();
+    while !seen.is_empty() {
+        let rest = seen.split_off(share.min(seen.len()));
+        shares.push(std::mem::replace(&mut seen, rest));
+    }
+    let work = |share: Vec<SeenThing>| -> Vec<ThingEvidence> {
+        share.into_iter().map(|seen| ThingEvidence::new(seen, &parameters)).collect()
+    };
+    if shares.len() < 2 {
+        return shares.into_iter().flat_map(work).collect();
+    }
+    thread::scope(|scope| {
+        let workers: Vec<_> = shares.into_iter().map(|share| scope.spawn(move || work(share))).collect();
+        workers
+            .into_iter()
+            .flat_map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    })
 }
 
 fn unusable(reason: impl std::fmt::Display) -> StepError {

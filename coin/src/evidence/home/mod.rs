@@ -1,8 +1,8 @@
 //! A whole home judged at once: what one thing tells of the people's habits counts for every other one.
 //!
-//! Every thing is explained by three accounts of its use (see [`likelihood`]), which are mixed as the [`habits`] of the
+//! Every thing is explained by three accounts of its use (see `likelihood`), which are mixed as the `habits` of the
 //! home are; the habits are known as far as all things and all answers tell them. Looks count for as much as they turn out
-//! to tell in this very home (see [`resemblance`]). The whole is closed form: the same home gives the same judgement.
+//! to tell in this very home (see `resemblance`). The whole is closed form: the same home gives the same judgement.
 
 mod habits;
 mod likelihood;
@@ -10,9 +10,7 @@ mod resemblance;
 mod weighed;
 
 use std::borrow::Cow;
-use std::num::NonZero;
 use std::sync::Arc;
-use std::thread;
 
 use libm::exp;
 
@@ -35,9 +33,6 @@ const SURE_ENOUGH: f64 = 0.7;
 /// The most rivals of a best owner set that are tried, those which explain the use of the thing best. In a household of five
 /// these are all.
 const MOST_RIVALS: usize = 30;
-
-/// Fewer things are worked out sooner than a thread is started.
-const WORTH_A_THREAD: usize = 64;
 
 /// Habits that are less probable than this are left out of the mixture.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -74,6 +69,21 @@ pub struct Told<'a> {
 pub struct HomeEvidence {
     things: Vec<Thing>,
     parameters: EvidenceParameters,
+}
+
+/// What was seen of one thing, worked out by itself. This takes most of the time of a large home, and whoever has several
+/// processors can share it among them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ThingEvidence(Thing);
+
+impl ThingEvidence {
+    /// Of a thing that somebody can own.
+    ///
+    /// # Panics
+    /// If the thing has no candidate.
+    pub fn new(seen: SeenThing, parameters: &EvidenceParameters) -> Self {
+        Self(Thing::new(seen, parameters))
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -116,7 +126,13 @@ impl HomeEvidence {
     /// # Panics
     /// If a thing has no candidate.
     pub fn new(things: Vec<SeenThing>, parameters: EvidenceParameters) -> Self {
-        let mut things = worked_out(things, &parameters);
+        let evidence = things.into_iter().map(|seen| ThingEvidence::new(seen, &parameters));
+        Self::of(evidence.collect(), parameters)
+    }
+
+    /// Of things whose evidence was worked out before, with the same parameters.
+    pub fn of(things: Vec<ThingEvidence>, parameters: EvidenceParameters) -> Self {
+        let mut things: Vec<Thing> = things.into_iter().map(|ThingEvidence(thing)| thing).collect();
         let alike = mutual_look_alikes(&things);
         for (thing, alike) in things.iter_mut().zip(alike) {
             thing.seen.alike = alike;
@@ -330,30 +346,6 @@ impl Thing {
         }
         OwnerSetDistribution::from_weights(weights)
     }
-}
-
-/// Works out what was seen of each thing. Where there are many, several threads share the work; the result is the same.
-fn worked_out(mut seen: Vec<SeenThing>, parameters: &EvidenceParameters) -> Vec<Thing> {
-    let threads = thread::available_parallelism().map_or(1, NonZero::get);
-    let share = seen.len().div_ceil(threads).max(WORTH_A_THREAD);
-    let mut shares = Vec::new();
-    while !seen.is_empty() {
-        let rest = seen.split_off(share.min(seen.len()));
-        shares.push(std::mem::replace(&mut seen, rest));
-    }
-    let work = |share: Vec<SeenThing>| -> Vec<Thing> {
-        share.into_iter().map(|seen| Thing::new(seen, parameters)).collect()
-    };
-    if shares.len() < 2 {
-        return shares.into_iter().flat_map(work).collect();
-    }
-    thread::scope(|scope| {
-        let workers: Vec<_> = shares.into_iter().map(|share| scope.spawn(|| work(share))).collect();
-        workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
-    })
 }
 
 /// Whether two distributions of habits differ by no more than what is left out of either.
