@@ -34,7 +34,7 @@ pub struct ExperimentArguments {
     /// How many homes of each kind; 0 measures nothing
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub coverage_homes: usize,
-    /// Kinds of homes on which each term of the evidence model is left out
+    /// Kinds of fresh homes, twelve of each, on which each term of the evidence model is left out
     #[arg(long, value_enum, value_name = "PROTOCOL", value_delimiter = ',', num_args = 1..)]
     pub terms: Vec<Protocol>,
     /// Write results.json, tables.md, figures and index.html to this folder
@@ -53,7 +53,9 @@ Examples:
   host experiment --episode fixtures/episodes/small-house --out RESULTS
       All nine methods, ten trials; open RESULTS/index.html afterwards.
   host experiment --episode HOME1 HOME2 --methods coin,coin_paper,frequency --trials 3 --coverage-homes 0 --out RESULTS
-      Some methods on homes of your own.";
+      Some methods on homes of your own.
+  host experiment --episode HOME --methods coin --trials 1 --coverage-homes 0 --terms borrowing office --out RESULTS
+      What every term of the evidence is worth on fresh homes of two kinds, and the curve beside the oracle.";
 
 /// A method as it is typed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -131,6 +131,34 @@ fn the_documented_tables_are_what_the_command_makes() {
     }
 }
 
+/// What every term is worth is documented as the command measures it; one kind of home stands for all.
+#[test]
+fn the_documented_worth_of_terms_is_what_the_command_measures() {
+    if cfg!(debug_assertions) || !is_slow_run("the documented worth of terms") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("results");
+    let arguments =
+        ["--methods", "coin", "--trials", "1", "--coverage-homes", "0", "--terms", "paper", "--quiet"];
+    experiment(&small_house(), &out, &arguments).expect_code(0);
+    let section = |file: &Path| -> String {
+        let text = fs::read_to_string(file).unwrap();
+        let sections = text.split("\n## ").map(str::trim);
+        let mut found = sections.filter(|section| section.starts_with("What the terms are worth: paper"));
+        found.next().unwrap_or_else(|| panic!("{} has no such table", file.display())).to_owned()
+    };
+    let documented = repository().join("docs/experiment");
+    assert_eq!(section(&out.join("tables.md")), section(&documented.join("terms.md")));
+    let [made, kept] = [&out, &documented].map(|at| fs::read(at.join("figures/curve-paper.svg")).unwrap());
+    assert!(made == kept, "curve-paper.svg is another; copy the figures anew");
+    let kind = &results(&out)["kinds"][0];
+    let questions = |place: usize| kind["terms"][place]["questions"]["mean"].as_f64().unwrap();
+    assert_eq!(kind["terms"].as_array().unwrap().len(), 7);
+    println!("paper: {:.1} questions, {:.1} without looks", questions(0), questions(3));
+    assert!(questions(0) <= 4.0 && questions(0) < questions(3));
+}
+
 /// What the whole experiment is to reach: ten trials of nine methods on 34 things in a minute; COIN at least as right
 /// as the paper with at most eight questions; a fifth of the calls and tokens of the paper's scheme.
 #[test]

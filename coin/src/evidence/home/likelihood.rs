@@ -11,6 +11,10 @@ use crate::roster::UserIndex;
 /// A change of hands is looked for at no more than so many places of a history, evenly spread.
 const MOST_CUTS: usize = 16;
 
+/// The place in [`EVENNESS`] of the split among the owners of a thing that changed hands. Both its pasts are short, so that
+/// the looser one does.
+const SPLIT: usize = 0;
+
 /// How probable it is that a thing which changed hands was everybody's before; else it was one person's.
 const EVERYBODYS_BEFORE: f64 = 0.2;
 
@@ -238,7 +242,7 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
                 let (earlier, later) = (counts_of(earlier, members), counts_of(later, members));
                 let past: Vec<f64> = before
                     .iter()
-                    .map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, 0))
+                    .map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, SPLIT))
                     .collect();
                 let largest = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 let weighed: Vec<(OwnerSet, f64, f64)> = before
@@ -261,7 +265,7 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
                         true => log_mean_of(Some(set)),
                         false => of_all,
                     };
-                    sum.push(of_others + counting.log_likelihood(&later, set, lending, 0));
+                    sum.push(of_others + counting.log_likelihood(&later, set, lending, SPLIT));
                 }
             }
             sums.iter().map(|sum| log_mean(sum)).collect()
