@@ -68,9 +68,9 @@ fn an_answer_that_was_taken_back_leaves_nothing_behind() {
         assert_eq!(object["source"], "inferred", "{object}");
         let reported = report["objects"].as_array().unwrap();
         let reported = reported.iter().find(|reported| reported["id"] == object["id"]).unwrap();
-        // The server makes the probabilities that it is handed sum to 1 once more, which may move the last bit.
+        // Owner sets that are next to impossible are not stored, and the others are made to sum to 1 once more.
         let difference = object["confidence"].as_f64().unwrap() - reported["confidence"].as_f64().unwrap();
-        assert!(difference.abs() < 1e-12, "{object} is reported with {}", reported["confidence"]);
+        assert!(difference.abs() < 1e-8, "{object} is reported with {}", reported["confidence"]);
     }
 }
 
