@@ -346,6 +346,7 @@ async fn score_loaded(
         share: ShareThresholds::default(),
         max_questions: 0,
         reinference: Reinference::AnsweredContext,
+        answers_per_pass: 1,
     };
     let course = Course::new(agent_settings, how.withheld.clone(), how.scoring, how.concurrency)
         .with_parameters(how.parameters);

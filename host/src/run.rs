@@ -40,6 +40,9 @@ use crate::steps::Steps;
 /// How many conversations go on at once where nobody says otherwise.
 pub const CONCURRENCY: usize = 4;
 
+/// Where every answer bears on every thing, a home is judged anew after one answer for so many of its things.
+const THINGS_PER_ANSWER: usize = 100;
+
 /// Who answers the questions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answers {
@@ -229,6 +232,7 @@ pub async fn run_episode(
         share: ShareThresholds::default(),
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
         reinference: settings.reinference,
+        answers_per_pass: 1,
     };
     let parameters = report::parameters(&agent_settings, person.kind(), &settings.withheld, scoring);
     let mut course =
@@ -398,6 +402,7 @@ pub(crate) async fn drive(
     // The evidence of one thing bears on every other one, and to weigh it again costs nothing.
     if scoring.estimator != Estimator::Model {
         settings.reinference = Reinference::EveryUnasked;
+        settings.answers_per_pass = home.things.len().div_ceil(THINGS_PER_ANSWER).max(1);
     }
     let mut agent = Agent::new(settings, home.things.keys().cloned());
     for (object, owners) in answered {

@@ -42,6 +42,9 @@ pub struct AgentSettings {
     pub max_questions: usize,
     /// Which things are inferred again after an answer.
     pub reinference: Reinference,
+    /// So many answers are awaited before things are inferred again; 1 in the paper. One answer more changes little where
+    /// there are thousands of things. No run ends with an answer that was not taken into account, but at Q_max.
+    pub answers_per_pass: usize,
 }
 
 /// An event that does not belong to the state that the agent is in. It changes nothing.
@@ -77,6 +80,8 @@ pub struct Agent {
     /// BUILD-KNOWN as the last pass saw it.
     known: BTreeMap<ObjectId, Known>,
     questions: usize,
+    /// The questions since things were inferred last.
+    questions_since_pass: usize,
     phase: Phase,
 }
 
@@ -84,7 +89,14 @@ impl Agent {
     /// An agent for these things; duplicates count once.
     pub fn new(settings: AgentSettings, objects: impl IntoIterator<Item = ObjectId>) -> Self {
         let objects = objects.into_iter().map(|object| (object, ObjectState::default())).collect();
-        Self { settings, objects, known: BTreeMap::new(), questions: 0, phase: Phase::Idle }
+        Self {
+            settings,
+            objects,
+            known: BTreeMap::new(),
+            questions: 0,
+            questions_since_pass: 0,
+            phase: Phase::Idle,
+        }
     }
 
     /// Takes over what a person answered before the run; a thing that is settled so is not asked about. Call it before
@@ -166,6 +178,7 @@ impl Agent {
 
     /// Lines 4 to 7 of Algorithm 1: BUILD-KNOWN, then LLM-INFER for the things that need it.
     fn start_pass(&mut self) -> Vec<Effect> {
+        self.questions_since_pass = 0;
         let known = self.build_known();
         let answered: BTreeSet<&ObjectId> = known
             .iter()
@@ -265,7 +278,7 @@ impl Agent {
         let gate = self.settings.gate;
         let unsettled: Vec<(&ObjectId, &ObjectState)> = self.unsettled().collect();
         if unsettled.is_empty() {
-            return self.finish(Stopped::Confident);
+            return self.finish_up_to_date(Stopped::Confident);
         }
         if self.questions >= self.settings.max_questions {
             return self.finish(Stopped::MaxQuestions);
@@ -279,7 +292,15 @@ impl Agent {
                 self.phase = Phase::Asking { object: object.clone() };
                 vec![Effect::Ask { object }]
             }
-            None => self.finish(Stopped::NothingLeftToAsk),
+            None => self.finish_up_to_date(Stopped::NothingLeftToAsk),
+        }
+    }
+
+    /// Ends the run, unless an answer has not been taken into account.
+    fn finish_up_to_date(&mut self, stopped: Stopped) -> Vec<Effect> {
+        match self.questions_since_pass {
+            0 => self.finish(stopped),
+            _ => self.start_pass(),
         }
     }
 
@@ -296,6 +317,10 @@ impl Agent {
     fn after_question(&mut self) -> Vec<Effect> {
         if self.questions >= self.settings.max_questions {
             return self.finish(Stopped::MaxQuestions);
+        }
+        self.questions_since_pass += 1;
+        if self.questions_since_pass < self.settings.answers_per_pass {
+            return self.ask_or_finish();
         }
         self.start_pass()
     }

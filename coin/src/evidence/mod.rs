@@ -46,10 +46,10 @@ pub struct EvidenceParameters {
     pub prior_single: f64,
     /// Prior probability that everyone owns it.
     pub prior_everyone: f64,
-    /// The place term: how probable it is that a thing at no distance from a thing with answered owners has the
+    /// The place term of the bare formula: how probable it is that a thing at no distance from a thing with answered owners has the
     /// same ones. 0 switches the term off; it stays below 1, because no neighbour makes anything certain.
     pub place: f64,
-    /// The looks term: the same for a thing that looks exactly alike, also below 1. 0 switches the term off.
+    /// The looks term of the bare formula: the same for a thing that looks exactly alike, also below 1. 0 switches the term off.
     pub looks: f64,
     /// The class term: how probable it is that the thing follows what common sense expects of its class in this
     /// household. 0 switches the term off.
@@ -63,9 +63,10 @@ pub struct EvidenceParameters {
     pub turns: f64,
     /// How probable it is that a thing had other owners in an earlier part of its history. 0 switches the term off.
     pub change_of_hands: f64,
-    /// The exponent of what looks tell, once the home has shown how much that is; below 1, because look-alikes of one
-    /// brand are no independent witnesses. 0 switches the term off.
+    /// The largest exponent of what looks tell in a home; how much of it counts, the home shows. 0 switches the term off.
     pub resemblance: f64,
+    /// The same for what lies near. 0 switches the term off.
+    pub nearness: f64,
     /// Where the habits of the home come from.
     pub habits: HabitSource,
 }
@@ -84,7 +85,8 @@ impl Default for EvidenceParameters {
             language_model: 0.25,
             turns: 1.5,
             change_of_hands: 0.04,
-            resemblance: 0.5,
+            resemblance: 1.0,
+            nearness: 1.0,
             habits: HabitSource::Learnt,
         }
     }

@@ -1,4 +1,5 @@
-"""Judgements of whole homes by plain enumeration: every thing, every owner set, every point of the grid of habits.
+"""Judgements of whole homes by plain enumeration: every thing, every owner set, every point of the grid of habits; then
+every pair of things, every exponent of what looks and places hint at.
 
     python3 coin/tests/known_answers/home.py > coin/tests/known_answers/home.json
 
@@ -81,10 +82,140 @@ def changed(users, owners, members, lending):
     return total / len(cuts)
 
 
-def judged(things, members, answers):
+EXPONENTS = [0, 1 / 8, 1 / 4, 1 / 2, 1]
+SURE_ENOUGH, ROUNDS, SHRINKAGE, LEAST_SHARE = 0.6, 2, 4, 0.1
+
+
+def ties(one, other):
+    """How alike a mean of tastes, and how alike a common taste makes things of these owners."""
+    both = len(one & other)
+    return both / (len(one) * len(other)), both / len(one | other)
+
+
+def line(pairs):
+    """A line over both ties through (owners, owners, number), and the variance within a kinship; None if by chance."""
+    def size(one, other):
+        return min(len(one), len(other)), max(len(one), len(other)), len(one & other)
+
+    def around(expected):
+        return sum((number - expected(one, other)) ** 2 for one, other, number in pairs)
+
+    kinds = {}
+    for one, other, number in pairs:
+        kinds.setdefault(size(one, other), []).append(number)
+    if len(pairs) <= len(kinds):
+        return None
+    means = {kind: sum(numbers) / len(numbers) for kind, numbers in kinds.items()}
+    variance = around(lambda one, other: means[size(one, other)]) / (len(pairs) - len(kinds))
+    mean = sum(number for *_, number in pairs) / len(pairs)
+    centre = [sum(ties(one, other)[tie] for one, other, _ in pairs) / len(pairs) for tie in (0, 1)]
+    rows = [([tie - middle for tie, middle in zip(ties(one, other), centre)], number - mean) for one, other, number in pairs]
+    xx, xy, yy = (sum(ties[i] * ties[j] for ties, _ in rows) for i, j in ((0, 0), (0, 1), (1, 1)))
+    xc, yc = (sum(ties[i] * number for ties, number in rows) for i in (0, 1))
+    slopes = [(0, 0)]
+    if xx > 0:
+        slopes += [(xc / xx, 0)]
+    if xx * yy - xy * xy > 1e-9 * xx * yy:
+        slopes += [(0, yc / yy), ((yy * xc - xy * yc) / (xx * yy - xy * xy), (xx * yc - xy * xc) / (xx * yy - xy * xy))]
+
+    def along(slope):
+        return lambda one, other: mean + sum(s * (t - m) for s, t, m in zip(slope, ties(one, other), centre))
+
+    best = min((slope for slope in slopes if min(slope) >= 0), key=lambda slope: around(along(slope)))
+    explained = around(lambda *_: mean) - around(along(best))
+    if variance <= 0 or explained <= SHRINKAGE * variance:
+        return None
+    return along([(1 - SHRINKAGE * variance / explained) * slope for slope in best]), variance, mean
+
+
+def hinted(fits, priors, beliefs, answers):
+    """By how much hints count, as they foretell all things; for every set of every thing what they make of it."""
+    sums = []
+    for exponent in EXPONENTS:
+        logarithm = 0.0
+        for place, (fit, prior, belief) in enumerate(zip(fits, priors, beliefs)):
+            power = {owners: exp(exponent * (value - max(fit.values()))) for owners, value in fit.items()}
+            seen = sum(belief[owners] * power[owners] for owners in belief)
+            if place in answers:
+                seen = TRUST * power[answers[place]] + (1 - TRUST) * seen
+            logarithm += log(seen) - log(sum(prior[owners] * power[owners] for owners in prior))
+        sums.append(logarithm)
+    weights = [exp(logarithm - max(sums)) for logarithm in sums]
+    result = []
+    for fit, belief in zip(fits, beliefs):
+        of_thing = dict.fromkeys(belief, 0.0)
+        for exponent, weight in zip(EXPONENTS, weights):
+            power = {owners: exp(exponent * (value - max(fit.values()))) for owners, value in fit.items()}
+            seen = sum(belief[owners] * power[owners] for owners in belief)
+            for owners in belief:
+                of_thing[owners] += weight / sum(weights) * power[owners] / seen
+        result.append(of_thing)
+    return result
+
+
+def in_company(beliefs, priors, answers, alike, near):
+    """The beliefs with what looks and places make of them."""
+    told = beliefs
+    for _ in range(ROUNDS):
+        known = {}
+        for place, belief in enumerate(told):
+            best = max(belief, key=belief.get)
+            if place in answers:
+                known[place] = answers[place]
+            elif belief[best] >= SURE_ENOUGH:
+                known[place] = best
+        pairs = [(one, other) for one, other in combinations(sorted(known), 2)]
+        factors = []
+        looks = line([(known[one], known[other], alike[one, other]) for one, other in pairs if (one, other) in alike])
+        if looks:
+            expected, variance, _ = looks
+            factors.append(
+                [
+                    {
+                        owners: -sum(
+                            (cosine - expected(owners, known[other])) ** 2 / (2 * variance)
+                            for pair, cosine in alike.items()
+                            for other in set(pair) - {place}
+                            if place in pair and other in known
+                        )
+                        for owners in belief
+                    }
+                    for place, belief in enumerate(beliefs)
+                ]
+            )
+        places = line([(known[one], known[other], near.get((one, other), 0.0)) for one, other in pairs])
+        if places and any(pair in near for pair in pairs):
+            expected, _, mean = places
+            rate = lambda one, other: max(expected(one, other), LEAST_SHARE * mean)
+            factors.append(
+                [
+                    {
+                        owners: sum(
+                            weight
+                            * log(rate(owners, known[other]) / sum(rate(owners, known[one]) for one in known))
+                            for pair, weight in near.items()
+                            for other in set(pair) - {place}
+                            if place in pair and other in known
+                        )
+                        for owners in belief
+                    }
+                    for place, belief in enumerate(beliefs)
+                ]
+            )
+        told = [dict(belief) for belief in beliefs]
+        for fits in factors:
+            for belief, hints in zip(told, hinted(fits, priors, beliefs, answers)):
+                for owners in belief:
+                    belief[owners] *= hints[owners]
+        told = [{owners: value / sum(belief.values()) for owners, value in belief.items()} for belief in told]
+    return told
+
+
+def judged(things, members, answers, alike, near):
     """For every thing the probability of every owner set."""
     sets = owner_sets(members)
     sums, total = [dict.fromkeys(sets, 0.0) for _ in things], 0.0
+    before = dict.fromkeys(sets, 0.0)
     for sizes, lending, evenness, mistaken, single, shared in product(
         SIZES, LENDING, EVENNESS, MISTAKEN, SINGLE_KEPT, SHARED_KEPT
     ):
@@ -104,29 +235,64 @@ def judged(things, members, answers):
             named = answers.get(place)
             weight *= everything if named is None else TRUST * joint[named] + (1 - TRUST) * everything
         total += weight
+        for owners in sets:
+            before[owners] += weight * prior(owners, members, *sizes)
         for of_thing, belief in zip(sums, beliefs):
             for owners, value in belief.items():
                 of_thing[owners] += weight * value
-    return [{owners: value / total for owners, value in of_thing.items()} for of_thing in sums]
+    beliefs = [{owners: value / total for owners, value in of_thing.items()} for of_thing in sums]
+    before = {owners: value / total for owners, value in before.items()}
+    return in_company(beliefs, [before] * len(things), answers, alike, near)
 
+
+WEEK = ["aaaaaa", "aaaaa", "aaaba", "bbbbbb", "bbbbb", "bbabb", "cccccc", "ccccc", "abcabc", "bcabca", "ab", "", "c"]
+OWNERS = [{0}, {0}, {0}, {1}, {1}, {1}, {2}, {2}, {0, 1, 2}, {0, 1, 2}, {0}, {1}, {2}]
+
+
+def looking(common):
+    """Cosines of every pair: of a mean of tastes or of common tastes, and what is neither."""
+    pairs = combinations(range(len(WEEK)), 2)
+    return {(i, j): 0.25 * ties(OWNERS[i], OWNERS[j])[common] + 0.03 * ((7 * i + 11 * j + i * j) % 5) for i, j in pairs}
+
+
+def lying(pairs):
+    return {pair: 0.3 + 0.1 * (sum(pair) % 5) for pair in pairs}
+
+
+TIDY = lying([(0, 1), (0, 2), (1, 2), (3, 4), (4, 5), (3, 5), (6, 7), (8, 9), (10, 0), (10, 1), (3, 11), (4, 11), (6, 12), (2, 8)])
+TIDY = {tuple(sorted(pair)): weight for pair, weight in TIDY.items()}
+MESSY = lying([(0, 3), (1, 6), (2, 9), (4, 7), (5, 8), (10, 11), (11, 12)])
 
 CASES = [
-    (3, ["aabacaa", "abab", "ccacc"], {}),
-    (3, ["aabacaa", "abab", "ccacc"], {2: [2]}),
-    (3, ["aaaaaabbbbb", "", "b"], {0: [1]}),
-    (2, ["abababab", "aaaab", "bbbbbbbb"], {1: [0, 1]}),
-    (4, ["abcdabcd", "aaadaaa", "bbcbcb", "dddd"], {1: [0]}),
-    (1, ["aaa"], {}),
+    (3, ["aabacaa", "abab", "ccacc"], {}, {}, {}),
+    (3, ["aabacaa", "abab", "ccacc"], {2: [2]}, {}, {}),
+    (3, ["aaaaaabbbbb", "", "b"], {0: [1]}, {}, {}),
+    (2, ["abababab", "aaaab", "bbbbbbbb"], {1: [0, 1]}, {}, {}),
+    (4, ["abcdabcd", "aaadaaa", "bbcbcb", "dddd"], {1: [0]}, {}, {}),
+    (1, ["aaa"], {}, {}, {}),
+    (3, WEEK, {}, looking(0), {}),
+    (3, WEEK, {11: [1]}, looking(1), {}),
+    (3, WEEK, {}, {}, TIDY),
+    (3, WEEK, {12: [0]}, {}, MESSY),
+    (3, WEEK, {5: [1], 10: [0, 1]}, looking(0), TIDY),
 ]
 
 rows = []
-for members, things, answers in CASES:
+for members, things, answers, alike, near in CASES:
     users = [[ord(letter) - ord("a") for letter in sessions] for sessions in things]
     named = {place: frozenset(owners) for place, owners in answers.items()}
     posteriors = [
         [{"owners": sorted(owners), "probability": round(value, 12)} for owners, value in of_thing.items()]
-        for of_thing in judged(users, members, named)
+        for of_thing in judged(users, members, named, alike, near)
     ]
-    answered = [{"thing": place, "owners": owners} for place, owners in answers.items()]
-    rows.append({"members": members, "things": users, "answers": answered, "posteriors": posteriors})
+    rows.append(
+        {
+            "members": members,
+            "things": users,
+            "answers": [{"thing": place, "owners": owners} for place, owners in answers.items()],
+            "alike": [[*pair, round(cosine, 12)] for pair, cosine in alike.items()],
+            "near": [[*pair, round(weight, 12)] for pair, weight in near.items()],
+            "posteriors": posteriors,
+        }
+    )
 print("[\n" + ",\n".join(json.dumps(row) for row in rows) + "\n]")

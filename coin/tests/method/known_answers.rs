@@ -40,6 +40,12 @@ fn assert_close(found: f64, expected: f64, tolerance: f64, row: &Value) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected} in {row}");
 }
 
+/// What a thing is related to, of rows of a thing, an earlier one, and a number.
+fn related(rows: &Value, place: usize) -> Vec<(usize, f64)> {
+    let rows = rows.as_array().unwrap().iter().map(numbers);
+    rows.filter(|row| row[0] as usize == place).map(|row| (row[1] as usize, row[2])).collect()
+}
+
 #[test]
 fn homes_are_judged_as_by_enumeration() {
     for row in table(include_str!("../known_answers/home.json")) {
@@ -48,11 +54,12 @@ fn homes_are_judged_as_by_enumeration() {
             .as_array()
             .unwrap()
             .iter()
-            .map(|users| SeenThing {
-                class: String::new(),
+            .enumerate()
+            .map(|(place, users)| SeenThing {
+                class: place.to_string(),
                 sessions: numbers(users).into_iter().map(|place| user(place as usize)).collect(),
-                near: Vec::new(),
-                alike: Vec::new(),
+                near: related(&row["near"], place),
+                alike: related(&row["alike"], place),
                 candidates: (0..members).map(user).collect(),
                 latecomers: OwnerSet::EMPTY,
             })

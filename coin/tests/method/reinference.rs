@@ -111,3 +111,18 @@ fn the_limit_still_comes_before_another_pass() {
     run.handle(inferred_seeing("2", DOUBTFUL, &["1"]));
     assert_eq!(run.handle(owned_by(&[0])), [finish(Stopped::MaxQuestions)]);
 }
+
+/// Two answers are taken together; the third is the last and is taken into account before the run ends.
+#[test]
+fn answers_may_be_taken_together() {
+    let settings = AgentSettings { answers_per_pass: 2, ..the_papers() };
+    let doubtful: Vec<(&str, &[f64])> = ["1", "2", "3", "4"].map(|object| (object, DOUBTFUL)).into();
+    let (mut run, effects) = Run::after_first_pass(settings, &doubtful);
+    assert_eq!(effects.last(), Some(&ask("1")));
+    assert_eq!(run.handle(owned_by(&[0])), [ask("2")]);
+    assert_eq!(run.handle(owned_by(&[0])), [infer(&["3", "4"])]);
+    run.handle(inferred("3", MORE_DOUBTFUL));
+    run.handle(inferred("4", SURE));
+    assert_eq!(run.handle(owned_by(&[0])), [infer(&["4"])]);
+    assert_eq!(run.handle(inferred("4", SURE)), [finish(Stopped::Confident)]);
+}

@@ -25,6 +25,7 @@ pub(crate) fn the_papers() -> AgentSettings {
         share: ShareThresholds::default(),
         max_questions: usize::MAX,
         reinference: Reinference::EveryUnasked,
+        answers_per_pass: 1,
     }
 }
 

@@ -169,9 +169,17 @@ fn any_world() -> impl Strategy<Value = World> {
     let reinference = prop_oneof![Just(Reinference::AnsweredContext), Just(Reinference::EveryUnasked)];
     let thresholds = prop_oneof![3 => Just(CALIBRATED), 1 => Just(Thresholds::Uncalibrated)];
     let max_questions = prop_oneof![2 => Just(usize::MAX), 1 => 0..6_usize];
-    (gate, reinference, thresholds, max_questions, 0..8_usize, any::<u64>(), any::<u64>()).prop_map(
-        |(gate, reinference, thresholds, max_questions, things, seed, order)| World {
-            settings: AgentSettings { gate, reinference, thresholds, max_questions, ..the_papers() },
+    let passes = (reinference, 1..4_usize);
+    (gate, passes, thresholds, max_questions, 0..8_usize, any::<u64>(), any::<u64>()).prop_map(
+        |(gate, (reinference, answers_per_pass), thresholds, max_questions, things, seed, order)| World {
+            settings: AgentSettings {
+                gate,
+                reinference,
+                answers_per_pass,
+                thresholds,
+                max_questions,
+                ..the_papers()
+            },
             things,
             seed,
             order,

@@ -43,7 +43,7 @@ fn without(term: Option<Term>) -> EvidenceParameters {
     match term {
         None => whole,
         Some(Term::Class) => EvidenceParameters { common_sense: 0.0, language_model: 0.0, ..whole },
-        Some(Term::Place) => EvidenceParameters { place: 0.0, ..whole },
+        Some(Term::Place) => EvidenceParameters { place: 0.0, nearness: 0.0, ..whole },
         Some(Term::Looks) => EvidenceParameters { looks: 0.0, resemblance: 0.0, ..whole },
         Some(Term::Turns) => EvidenceParameters { turns: 0.0, ..whole },
         Some(Term::ChangeOfHands) => EvidenceParameters { change_of_hands: 0.0, ..whole },
@@ -180,6 +180,7 @@ impl Trial<'_> {
                 share: ShareThresholds::default(),
                 max_questions: home.loaded.episode.objects.len(),
                 reinference: Reinference::AnsweredContext,
+                answers_per_pass: 1,
             };
             let course =
                 Course::new(settings, BTreeSet::new(), scoring, concurrency).with_parameters(parameters);

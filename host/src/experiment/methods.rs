@@ -141,6 +141,7 @@ async fn agent(
         share: ShareThresholds::default(),
         max_questions: judged.loaded.episode.objects.len(),
         reinference: variant.reinference,
+        answers_per_pass: 1,
     };
     let course = Course::new(settings, kind.withheld, kind.scoring, concurrency);
     carried_out(judged, model, course, seed).await

@@ -1,34 +1,36 @@
 //! A whole home judged at once: what one thing tells of the people's habits counts for every other one.
 //!
 //! Every thing is explained by three accounts of its use (see `likelihood`), which are mixed as the `habits` of the
-//! home are; the habits are known as far as all things and all answers tell them. Looks count for as much as they turn out
-//! to tell in this very home (see `resemblance`). The whole is closed form: the same home gives the same judgement.
+//! home are; the habits are known as far as all things and all answers tell them. Looks and places count for as much as they
+//! turn out to tell in this very home (see `company`). Nothing is drawn by chance: the same home gives the same judgement.
 
+mod company;
 mod habits;
+mod hints;
 mod likelihood;
+mod nearness;
 mod resemblance;
+mod ties;
 mod weighed;
 
-use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use libm::exp;
 
-use super::prior::{Candidates, Opinion, relative_weights};
-use super::{EvidenceParameters, HabitSource, Relation, likeness_counts, log_likelihood};
+use super::prior::{Candidates, Opinion};
+use super::{EvidenceParameters, HabitSource, likeness_counts, log_likelihood};
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::UserIndex;
+use company::in_company;
 use habits::Habits;
+use hints::Company;
 use likelihood::Accounts;
-use resemblance::{MOST_ALIKE, Resemblance};
-use weighed::{Basis, Weighed};
+use weighed::Weighed;
 
 /// Where a thing has more candidate sets than this, as in a household of more than twelve, it is judged by itself with the
 /// bare formula of [`super::log_likelihood`]; so many people give their home no one habit.
 const MOST_SETS: usize = 800;
-
-/// From this probability of its best owner set on, a thing helps to find out what looks tell in a home.
-const SURE_ENOUGH: f64 = 0.7;
 
 /// The most rivals of a best owner set that are tried, those which explain the use of the thing best. In a household of five
 /// these are all.
@@ -107,8 +109,8 @@ pub struct HomeJudgement {
     weighed: Vec<Arc<Weighed>>,
     habits: Vec<(Habits, f64)>,
     beliefs: Vec<Arc<Vec<f64>>>,
-    /// For every set of every thing, how much likelier or less its looks make it; nothing where looks tell nothing.
-    looks: Vec<Vec<f64>>,
+    /// What the company of every thing makes of it; nothing where that tells nothing.
+    company: Vec<Company>,
     distributions: Vec<OwnerSetDistribution>,
 }
 
@@ -133,9 +135,12 @@ impl HomeEvidence {
     /// Of things whose evidence was worked out before, with the same parameters.
     pub fn of(things: Vec<ThingEvidence>, parameters: EvidenceParameters) -> Self {
         let mut things: Vec<Thing> = things.into_iter().map(|ThingEvidence(thing)| thing).collect();
-        let alike = mutual_look_alikes(&things);
-        for (thing, alike) in things.iter_mut().zip(alike) {
+        let alike =
+            mutual(&things, |seen| &seen.alike, |one, other| likeness_counts(&one.class, &other.class));
+        let near = mutual(&things, |seen| &seen.near, |_, _| true);
+        for ((thing, alike), near) in things.iter_mut().zip(alike).zip(near) {
             thing.seen.alike = alike;
+            thing.seen.near = near;
         }
         Self { things, parameters }
     }
@@ -162,10 +167,10 @@ impl HomeEvidence {
         let answers: Vec<Option<OwnerSet>> = told.iter().map(|told| told.answer).collect();
         let weighed: Vec<Arc<Weighed>> = (0..self.things.len())
             .map(|place| {
-                let basis = self.basis(place, &answers);
+                let answer = answers[place];
                 match before.map(|before| &before.weighed[place]) {
-                    Some(before) if before.basis == basis => Arc::clone(before),
-                    _ => Arc::new(self.weigh(place, basis, told[place].opinion)),
+                    Some(before) if before.answer == answer => Arc::clone(before),
+                    _ => Arc::new(self.weigh(place, answer, told[place].opinion)),
                 }
             })
             .collect();
@@ -181,24 +186,24 @@ impl HomeEvidence {
                 _ => Arc::new(weighed.belief(&self.things[place], &habits, &self.parameters)),
             })
             .collect();
-        let looks = self.by_looks(&beliefs, &answers);
+        let company = self.company(&weighed, &habits, &beliefs, &answers);
         let distributions = (0..self.things.len())
             .map(|place| match before {
                 Some(before)
-                    if looks.is_empty()
-                        && before.looks.is_empty()
+                    if company.is_empty()
+                        && before.company.is_empty()
                         && Arc::ptr_eq(&beliefs[place], &before.beliefs[place]) =>
                 {
                     before.distributions[place].clone()
                 }
-                _ => self.things[place].distribution(&seen_with(&beliefs[place], looks.get(place))),
+                _ => self.things[place].distribution(&in_company(&beliefs[place], company.get(place))),
             })
             .collect();
-        HomeJudgement { weighed, habits, beliefs, looks, distributions }
+        HomeJudgement { weighed, habits, beliefs, company, distributions }
     }
 
-    /// What is to be made of one thing with another opinion than it was judged with. The habits of the home and what its
-    /// looks tell stay as they were judged.
+    /// What is to be made of one thing with another opinion than it was judged with. The habits of the home and what
+    /// the company of the thing tells stay as they were judged.
     pub fn reconsidered(
         &self,
         judgement: &HomeJudgement,
@@ -206,9 +211,9 @@ impl HomeEvidence {
         opinion: Opinion<'_>,
     ) -> OwnerSetDistribution {
         let thing = &self.things[place];
-        let weighed = self.weigh(place, judgement.weighed[place].basis.clone(), opinion);
+        let weighed = self.weigh(place, judgement.weighed[place].answer, opinion);
         let belief = weighed.belief(thing, &judgement.habits, &self.parameters);
-        thing.distribution(&seen_with(&belief, judgement.looks.get(place)))
+        thing.distribution(&in_company(&belief, judgement.company.get(place)))
     }
 
     /// The least probability that the best owner set of a thing can be left with by a language model, whatever it says:
@@ -237,18 +242,8 @@ impl HomeEvidence {
         rivals.iter().take(MOST_RIVALS).map(left_by).fold(confidence, f64::min)
     }
 
-    fn basis(&self, place: usize, answers: &[Option<OwnerSet>]) -> Basis {
-        let thing = &self.things[place];
-        let near = thing.seen.near.iter();
-        let couplings = near.filter_map(|&(other, weight)| {
-            let owners = thing.candidates.narrowed((*answers.get(other)?)?)?;
-            Some((owners, self.parameters.coupling(Relation::Near { weight })))
-        });
-        Basis { answer: answers[place], couplings: couplings.collect() }
-    }
-
-    fn weigh(&self, place: usize, basis: Basis, opinion: Opinion<'_>) -> Weighed {
-        Weighed::new(&self.things[place], basis, opinion, &self.parameters)
+    fn weigh(&self, place: usize, answer: Option<OwnerSet>, opinion: Opinion<'_>) -> Weighed {
+        Weighed::new(&self.things[place], answer, opinion, &self.parameters)
     }
 
     /// p(habits | all things, all answers) over the grid, without what is negligible. Where habits are not learnt every
@@ -262,47 +257,6 @@ impl HomeEvidence {
         }
         let probabilities = from_logarithms(logarithms.into_iter());
         Habits::all().zip(probabilities).filter(|&(_, probability)| probability > NEGLIGIBLE).collect()
-    }
-
-    /// For every set of every thing, how much likelier or less its looks make it; nothing where looks tell nothing. Only
-    /// things whose owners were named, or are nearly sure, speak for the looks of others.
-    fn by_looks(&self, beliefs: &[Arc<Vec<f64>>], answers: &[Option<OwnerSet>]) -> Vec<Vec<f64>> {
-        if self.parameters.resemblance <= 0.0 || self.things.iter().all(|thing| thing.seen.alike.is_empty()) {
-            return Vec::new();
-        }
-        let known: Vec<Option<OwnerSet>> = self
-            .things
-            .iter()
-            .zip(beliefs)
-            .zip(answers)
-            .map(|((thing, belief), answer)| match *answer {
-                Some(owners) => Some(owners).filter(|owners| !owners.is_empty()),
-                None => thing.nearly_sure(belief),
-            })
-            .collect();
-        let pairs = self.things.iter().enumerate().flat_map(|(place, thing)| {
-            let known = &known;
-            thing
-                .seen
-                .alike
-                .iter()
-                .filter(move |&&(other, _)| place < other)
-                .filter_map(move |&(other, cosine)| Some((known[place]?, known[other]?, cosine)))
-        });
-        let Some(resemblance) = Resemblance::learn(pairs) else { return Vec::new() };
-        self.things
-            .iter()
-            .map(|thing| {
-                let others = thing.seen.alike.iter();
-                let others =
-                    others.filter_map(|&(other, cosine)| Some((known[other]?, cosine))).take(MOST_ALIKE);
-                let witnesses = resemblance.witnesses(others);
-                let fits = thing.candidates.sets().iter().map(|&set| {
-                    self.parameters.resemblance * witnesses.log_likelihood(thing.candidates.widened(set))
-                });
-                relative_weights(&fits.collect::<Vec<_>>())
-            })
-            .collect()
     }
 }
 
@@ -321,10 +275,15 @@ impl Thing {
         Self { seen, candidates, use_of_it }
     }
 
-    /// The best owner set, where it is nearly sure.
-    fn nearly_sure(&self, belief: &[f64]) -> Option<OwnerSet> {
-        let place = (0..belief.len()).find(|&place| belief[place] >= SURE_ENOUGH)?;
-        Some(self.candidates.widened(self.candidates.sets()[place]))
+    /// The members of the set at a place.
+    fn owners(&self, place: usize) -> OwnerSet {
+        self.candidates.widened(self.candidates.sets()[place])
+    }
+
+    /// The place of these members among the sets; `None` where they are no candidates.
+    fn place_of(&self, owners: OwnerSet) -> Option<usize> {
+        let owners = self.candidates.narrowed(owners)?;
+        self.candidates.sets().iter().position(|&set| set == owners)
     }
 
     /// The probabilities by members of the household. Whether what is everybody's is a latecomer's too is as likely as
@@ -357,14 +316,6 @@ fn are_same(left: &[(Habits, f64)], right: &[(Habits, f64)]) -> bool {
             .all(|(left, right)| left.0 == right.0 && (left.1 - right.1).abs() <= NEGLIGIBLE)
 }
 
-/// A belief with what its looks say, where they say anything.
-fn seen_with<'a>(belief: &'a [f64], looks: Option<&Vec<f64>>) -> Cow<'a, [f64]> {
-    match looks {
-        None => Cow::Borrowed(belief),
-        Some(looks) => belief.iter().zip(looks).map(|(belief, looks)| belief * looks).collect(),
-    }
-}
-
 /// The weights whose natural logarithms these are, made to sum to 1.
 fn from_logarithms(logarithms: impl Iterator<Item = f64>) -> Vec<f64> {
     let logarithms: Vec<f64> = logarithms.collect();
@@ -374,26 +325,28 @@ fn from_logarithms(logarithms: impl Iterator<Item = f64>) -> Vec<f64> {
     weights.iter().map(|weight| weight / sum).collect()
 }
 
-/// For every thing what looks like it or what it looks like, most alike first, without things of its own class, which look
-/// alike because they are of it.
-fn mutual_look_alikes(things: &[Thing]) -> Vec<Vec<(usize, f64)>> {
-    let mut alike: Vec<std::collections::BTreeMap<usize, f64>> = vec![Default::default(); things.len()];
+/// For every thing what it is related to or what is related to it, closest first, where that counts. Look-alikes of its own
+/// class do not, which look alike because they are of it.
+fn mutual(
+    things: &[Thing],
+    related: fn(&SeenThing) -> &[(usize, f64)],
+    counts: fn(&SeenThing, &SeenThing) -> bool,
+) -> Vec<Vec<(usize, f64)>> {
+    let mut all: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); things.len()];
     for (place, thing) in things.iter().enumerate() {
-        for &(other, cosine) in &thing.seen.alike {
-            if things.get(other).is_some_and(|other| likeness_counts(&thing.seen.class, &other.seen.class)) {
-                alike[place].insert(other, cosine);
-                alike[other].insert(place, cosine);
+        for &(other, relation) in related(&thing.seen) {
+            if other != place && things.get(other).is_some_and(|other| counts(&thing.seen, &other.seen)) {
+                all[place].insert(other, relation);
+                all[other].insert(place, relation);
             }
         }
     }
-    alike
-        .into_iter()
-        .map(|others| {
-            let mut others: Vec<(usize, f64)> = others.into_iter().collect();
-            others.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(&right.0)));
-            others
-        })
-        .collect()
+    let closest_first = |others: BTreeMap<usize, f64>| {
+        let mut others: Vec<(usize, f64)> = others.into_iter().collect();
+        others.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(&right.0)));
+        others
+    };
+    all.into_iter().map(closest_first).collect()
 }
 
 #[cfg(test)]

@@ -284,13 +284,45 @@ mod looks {
     }
 }
 
-#[test]
-fn an_answered_neighbour_bears_on_what_lies_beside_it() {
-    let mut things = home(3, &["", "b"]);
-    things[0].near = vec![(1, 1.0)];
-    let without = judged(things.clone(), &[], defaults())[0].probability(set(&[1]));
-    let with = judged(things, &[(1, set(&[1]))], defaults())[0].probability(set(&[1]));
-    assert!(with > without + 0.02, "{with} and {without}");
+mod places {
+    use super::*;
+
+    /// Two people's things: those of one lie together, or all lie among each other, and the last was never used.
+    fn lying(together: bool) -> Vec<SeenThing> {
+        let used = ["aaaaaa", "bbbbbb"].into_iter().cycle().take(24).chain([""]);
+        let mut things = home(2, &used.collect::<Vec<_>>());
+        let shelf = |place: usize| match (place, together) {
+            (24, _) => 0,
+            (_, true) => place % 2,
+            (_, false) => place / 2 % 2,
+        };
+        let places = 0..things.len();
+        for (place, thing) in things.iter_mut().enumerate() {
+            let beside = places.clone().filter(|&other| other != place && shelf(other) == shelf(place));
+            thing.near = beside.map(|other| (other, 0.3 + 0.1 * ((place + other) % 5) as f64)).collect();
+        }
+        things
+    }
+
+    #[test]
+    fn count_for_as_much_as_they_tell_in_this_home() {
+        let of_first = |things, parameters| judged(things, &[], parameters)[24].probability(set(&[0]));
+        let off = EvidenceParameters { nearness: 0.0, ..defaults() };
+        let alone = of_first(lying(true), off);
+        let telling = of_first(lying(true), defaults());
+        assert!(telling > alone + 0.3, "{telling} and {alone}");
+        let silent = of_first(lying(false), defaults());
+        assert!((silent - of_first(lying(false), off)).abs() < 0.05, "{silent}");
+    }
+
+    #[test]
+    fn are_told_by_those_whose_owners_are_named() {
+        let mut things = lying(true);
+        things[0].sessions.clear();
+        let other = judged(things.clone(), &[], defaults())[24].probability(set(&[1]));
+        let named = judged(things, &[(0, set(&[1])), (2, set(&[1])), (4, set(&[1]))], defaults());
+        assert!(named[24].probability(set(&[1])) > other, "{other}");
+    }
 }
 
 #[test]

@@ -3,30 +3,21 @@
 use libm::log;
 
 use super::super::EvidenceParameters;
-use super::super::prior::{Candidates, Opinion, SizePrior, logarithms, with_relatives};
+use super::super::prior::{Candidates, Opinion, SizePrior, logarithms};
 use super::habits::{EVENNESS, Habits, LENDING, MISTAKEN, SIZES};
 use super::likelihood::Accounts;
 use super::{Thing, Use};
 use crate::owners::OwnerSet;
 
 /// How probable it is that a person's answer is right, as far as the habits of the home are learnt from it.
-const TRUST: f64 = 0.95;
+pub(super) const TRUST: f64 = 0.95;
 
 /// A thing with the prior that what is told gives it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Weighed {
-    /// What it rests on; the same basis leads to the same weights.
-    pub(super) basis: Basis,
-    weights: Weights,
-}
-
-/// What the weights of a thing depend on, beside its own evidence and the opinion of it.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Basis {
     /// Whom a person named.
     pub(super) answer: Option<OwnerSet>,
-    /// The answered owners of near things by their places among the candidates, and how strongly they couple.
-    pub(super) couplings: Vec<(OwnerSet, f64)>,
+    weights: Weights,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -38,45 +29,56 @@ enum Weights {
         /// ln p(use, answer | habits) up to a constant, at every point of the grid.
         log_evidence: Vec<f64>,
     },
-    /// It is judged by itself, and this is its belief.
-    Alone(Vec<f64>),
+    /// It is judged by itself, with one prior and the belief that follows.
+    Alone { prior: Vec<f64>, belief: Vec<f64> },
 }
 
 impl Weighed {
     pub(super) fn new(
         thing: &Thing,
-        basis: Basis,
+        answer: Option<OwnerSet>,
         opinion: Opinion<'_>,
         parameters: &EvidenceParameters,
     ) -> Self {
         let candidates = &thing.candidates;
-        let prior = |sizes: SizePrior| {
-            let mut prior = candidates.own(opinion, sizes, parameters);
-            with_relatives(candidates.sets(), &mut prior, &basis.couplings);
-            prior
-        };
+        let prior = |sizes: SizePrior| candidates.own(opinion, sizes, parameters);
         let weights = match &thing.use_of_it {
             Use::Accounts(accounts) => {
                 let priors: Vec<Vec<f64>> = SIZES.map(prior).into();
                 let mixture = Mixture { candidates, accounts, priors: &priors, parameters };
-                let log_evidence = mixture.log_evidence(basis.answer);
+                let log_evidence = mixture.log_evidence(answer);
                 Weights::ByHabits { priors, log_evidence }
             }
             Use::Bare(use_of_it) => {
                 let prior = prior(parameters.sizes());
-                Weights::Alone(super::from_logarithms(
+                let belief = super::from_logarithms(
                     logarithms(&prior).zip(use_of_it).map(|(prior, used)| prior + used),
-                ))
+                );
+                Weights::Alone { prior, belief }
             }
         };
-        Self { basis, weights }
+        Self { answer, weights }
     }
 
     /// ln p(use, answer | habits) at every point of the grid; empty where the thing says nothing of habits.
     pub(super) fn log_evidence(&self) -> &[f64] {
         match &self.weights {
             Weights::ByHabits { log_evidence, .. } => log_evidence,
-            Weights::Alone(_) => &[],
+            Weights::Alone { .. } => &[],
+        }
+    }
+
+    /// Σ_h p(h)·π(S | h) for every set: what is thought before anybody has used the thing.
+    pub(super) fn prior(&self, habits: &[(Habits, f64)]) -> Vec<f64> {
+        match &self.weights {
+            Weights::ByHabits { priors, .. } => {
+                let mut shares = [0.0; SIZES.len()];
+                habits.iter().for_each(|(habits, probability)| shares[habits.sizes] += probability);
+                let sets = 0..priors.first().map_or(0, Vec::len);
+                sets.map(|set| shares.iter().zip(priors).map(|(share, prior)| share * prior[set]).sum())
+                    .collect()
+            }
+            Weights::Alone { prior, .. } => prior.clone(),
         }
     }
 
@@ -91,7 +93,9 @@ impl Weighed {
             (Weights::ByHabits { priors, .. }, Use::Accounts(accounts)) => {
                 Mixture { candidates: &thing.candidates, accounts, priors, parameters }.belief(habits)
             }
-            (Weights::Alone(belief), _) | (Weights::ByHabits { .. }, Use::Bare(belief)) => belief.clone(),
+            (Weights::Alone { belief, .. }, _) | (Weights::ByHabits { .. }, Use::Bare(belief)) => {
+                belief.clone()
+            }
         }
     }
 }
