@@ -43,6 +43,19 @@ pub enum Conclusion<'a> {
         /// When.
         on: Date,
     },
+    /// A person said so, but the use of the thing since fits other owners better.
+    Outdated {
+        /// How the answer was read.
+        said: Reading,
+        /// Who answered, where known.
+        by: Option<UserIndex>,
+        /// When.
+        on: Date,
+        /// The owners that fit better.
+        owners: OwnerSet,
+        /// Their probability, 0…1.
+        confidence: f64,
+    },
     /// It was inferred.
     Inferred {
         /// The most probable owners.
@@ -120,6 +133,19 @@ pub fn explain(explained: &Explained<'_>) -> String {
             let person = by.map_or("A person".to_owned(), |user| roster.name(user).to_string());
             let belongs = belongs(roster, reading, &thing, "");
             format!("{person} said on {on} that {} {belongs}. The words were: {}", thing.name, quoted(words))
+        }
+        Conclusion::Outdated { said, by, on, owners, confidence } => {
+            let person = by.map_or("A person".to_owned(), |user| roster.name(user).to_string());
+            let said = belongs(roster, said, &thing, "");
+            let now = belongs(roster, Reading { owners, outside_household: false }, &thing, "now ");
+            format!(
+                "{person} said on {on} that {} {said}, but judging by who has used {} since, {it} {now} ({}). Only a \
+                 person can tell whether {it} changed hands.",
+                thing.name,
+                thing.object,
+                percent(confidence),
+                it = thing.it,
+            )
         }
         Conclusion::Inferred { owners, confidence, standing, others, model } => {
             let reading = Reading { owners, outside_household: false };

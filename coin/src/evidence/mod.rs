@@ -11,17 +11,22 @@
 mod context;
 pub mod home;
 mod newcomers;
+mod outdated;
 mod prior;
 
 use libm::{lgamma, log};
 
 pub use context::WeighedContext;
 pub use newcomers::Arrivals;
+pub use outdated::{OUTDATED, since_answer};
 pub use prior::{Opinion, SizePrior};
 
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::UserIndex;
 use prior::{Candidates, logarithms, with_relatives};
+
+/// How probable it is that a person's answer is right: people are mistaken, misunderstood, or joke.
+const TRUST: f64 = 0.95;
 
 /// Where the habits of a home come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +51,7 @@ pub struct EvidenceParameters {
     pub prior_single: f64,
     /// Prior probability that everyone owns it.
     pub prior_everyone: f64,
-    /// The place term of the bare formula: how probable it is that a thing at no distance from a thing with answered owners has the
+    /// The place term of what people said: how probable it is that a thing at no distance from a thing with answered owners has the
     /// same ones. 0 switches the term off; it stays below 1, because no neighbour makes anything certain.
     pub place: f64,
     /// The looks term of the bare formula: the same for a thing that looks exactly alike, also below 1. 0 switches the term off.

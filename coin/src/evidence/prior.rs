@@ -235,3 +235,17 @@ pub(super) fn relative_weights(logarithms: &[f64]) -> Vec<f64> {
     let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     logarithms.iter().map(|&logarithm| exp(logarithm - largest)).collect()
 }
+
+/// ln of the sum of the numbers whose natural logarithms these are.
+pub(super) fn log_sum(logarithms: &[f64]) -> f64 {
+    let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if largest == f64::NEG_INFINITY {
+        return largest;
+    }
+    largest + log(logarithms.iter().map(|&logarithm| exp(logarithm - largest)).sum())
+}
+
+/// ln of the mean of the numbers whose natural logarithms these are.
+pub(super) fn log_mean(logarithms: &[f64]) -> f64 {
+    log_sum(logarithms) - log(logarithms.len() as f64)
+}

@@ -17,7 +17,7 @@ EVENNESS = [8.0, 25.0]
 MISTAKEN = [0.01, 0.06]
 SINGLE_KEPT = [0.2, 0.5]
 SHARED_KEPT = [0.1, 0.35, 0.65]
-TURNS, CHANGE, EVERYBODYS_BEFORE, MOST_CUTS, TRUST = 1.5, 0.04, 0.2, 16, 0.95
+TURNS, CHANGE, EVERYBODYS_BEFORE, MOST_CUTS, TRUST, PLACE = 1.5, 0.04, 0.2, 16, 0.95, 0.05
 
 
 def owner_sets(members):
@@ -34,6 +34,16 @@ def prior(owners, members, single, everyone):
         of_size[size] = (1 - single - everyone) / len(between)
     alike = sum(len(other) == len(owners) for other in owner_sets(members))
     return of_size[len(owners)] / alike / (1.0 if between else single + everyone)
+
+
+def beside(answered, owners, own):
+    """With some probability a thing has the owners of an answered one beside it, else those of the prior."""
+    alone = 1.0
+    for _, weight in answered:
+        alone *= 1 - PLACE * weight
+    total = sum(weight for _, weight in answered)
+    shared = sum(weight for other, weight in answered if other == owners)
+    return alone * own + ((1 - alone) * shared / total if answered else 0.0)
 
 
 def kept(users, owners, members, mistaken):
@@ -215,11 +225,15 @@ def judged(things, members, answers, alike, near):
     """For every thing the probability of every owner set."""
     sets = owner_sets(members)
     sums, total = [dict.fromkeys(sets, 0.0) for _ in things], 0.0
-    before = dict.fromkeys(sets, 0.0)
+    before = [dict.fromkeys(sets, 0.0) for _ in things]
+    answered = [
+        [(answers[other], weight) for pair, weight in near.items() if place in pair for other in set(pair) - {place} if other in answers]
+        for place in range(len(things))
+    ]
     for sizes, lending, evenness, mistaken, single, shared in product(
         SIZES, LENDING, EVENNESS, MISTAKEN, SINGLE_KEPT, SHARED_KEPT
     ):
-        weight, beliefs = 1.0, []
+        weight, beliefs, thoughts = 1.0, [], [{} for _ in things]
         for place, users in enumerate(things):
             joint = {}
             for owners in sets:
@@ -229,20 +243,22 @@ def judged(things, members, answers, alike, near):
                 moved = changed(users, owners, members, lending)
                 if moved is not None:
                     use = (1 - CHANGE) * use + CHANGE * moved
-                joint[owners] = prior(owners, members, *sizes) * use
+                thought = beside(answered[place], owners, prior(owners, members, *sizes))
+                joint[owners], thoughts[place][owners] = thought * use, thought
             everything = sum(joint.values())
             beliefs.append({owners: value / everything for owners, value in joint.items()})
             named = answers.get(place)
             weight *= everything if named is None else TRUST * joint[named] + (1 - TRUST) * everything
         total += weight
-        for owners in sets:
-            before[owners] += weight * prior(owners, members, *sizes)
+        for of_thing, thought in zip(before, thoughts):
+            for owners, value in thought.items():
+                of_thing[owners] += weight * value
         for of_thing, belief in zip(sums, beliefs):
             for owners, value in belief.items():
                 of_thing[owners] += weight * value
     beliefs = [{owners: value / total for owners, value in of_thing.items()} for of_thing in sums]
-    before = {owners: value / total for owners, value in before.items()}
-    return in_company(beliefs, [before] * len(things), answers, alike, near)
+    before = [{owners: value / total for owners, value in of_thing.items()} for of_thing in before]
+    return in_company(beliefs, before, answers, alike, near)
 
 
 WEEK = ["aaaaaa", "aaaaa", "aaaba", "bbbbbb", "bbbbb", "bbabb", "cccccc", "ccccc", "abcabc", "bcabca", "ab", "", "c"]

@@ -77,9 +77,12 @@ impl Scene<'_> {
             let context = self.all_of(object, objects.len(), as_of)?;
             let seen = SeenThing::in_context(roster, &object.class, &context, &places)?;
             things.push(seen.after(self.arrivals(object, as_of)?));
-            let answer = self.reader.present_answer(&self.household, object.key)?;
-            let answer = answer.filter(|answer| moment == Moment::Present || answer.at <= as_of);
-            answers.push(answer.map(|answer| roster.owner_set(&answer.owners())).transpose()?);
+            answers.push(match self.answer(object.key, moment)? {
+                Some(answer) if self.outdated(object, &answer, as_of)?.is_none() => {
+                    Some(roster.owner_set(&answer.owners())?)
+                }
+                _ => None,
+            });
         }
         let expectations: Vec<_> =
             objects.iter().map(|object| expect(object.class.as_str(), roster)).collect();

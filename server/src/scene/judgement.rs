@@ -1,25 +1,29 @@
 //! Whose a thing is, with what is known of it, and without any language model.
 
 use coin::calibration::{Assessment, EMBEDDED_MODEL, Thresholds};
+use coin::captions::civil_seconds;
 use coin::dialogue::{
     Conclusion, Explained, Grounds, Reading, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };
-use coin::evidence::{EvidenceParameters, Relation, likeness_counts};
+use coin::evidence::{EvidenceParameters, OUTDATED, Relation, likeness_counts, since_answer};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::roster::Roster;
 use coin::sharing::ShareThresholds;
 use coin::space::Neighbourhood;
+use coin::usage::session_order;
 use coin_schemas::household::{ObjectId, Owners, Score, Source};
 use coin_schemas::model::GivenContext;
+use coin_schemas::report::AnswerStatus;
 use coin_schemas::tools::{
     AnswerEvidence, DEFAULT_K, Evidence, KnownOwnership, LookAlikeEvidence, NeighbourEvidence, UsageEvidence,
     display_name,
 };
 use jiff::civil::DateTime;
 
+use super::known_ownership::answered_ownership;
 use super::usage::Listed;
 use super::{LookAlikes, Scene, Window};
-use crate::store::{Inference, RecordedAnswer, StoreError, StoredObject};
+use crate::store::{Inference, ObjectKey, RecordedAnswer, StoreError, StoredObject};
 
 /// A relative is worth a mention in an explanation from this probability on that the thing has its owners because of
 /// the relation.
@@ -49,6 +53,8 @@ pub(crate) struct Judgement {
 pub(crate) enum Basis {
     /// A person said so.
     Answer(Box<RecordedAnswer>),
+    /// A person said otherwise, but who used the thing since fits that no longer.
+    Outdated(Box<RecordedAnswer>),
     /// A model whose scores were recorded.
     Model {
         /// Its name, where it told one.
@@ -114,9 +120,11 @@ impl Scene<'_> {
         };
         let mut assessment = thresholds.assess(&scores, &distribution, &ShareThresholds::default());
         assessment.settled &= !is_open;
-        let answer = self.reader.present_answer(&self.household, object.key)?;
-        match answer.filter(|answer| moment == Moment::Present || answer.at <= as_of) {
-            Some(answer) => self.answered(answer, distribution, assessment, context),
+        match self.answer(object.key, moment)? {
+            Some(answer) => match self.outdated(object, &answer, as_of)? {
+                None => self.answered(answer, distribution, assessment, context),
+                Some(distribution) => Ok(self.reopened(answer, distribution, context)),
+            },
             None => Ok(Judgement {
                 reading: Reading { owners: assessment.owners, outside_household: false },
                 confidence: assessment.confidence,
@@ -142,6 +150,72 @@ impl Scene<'_> {
             self.reader.go_on()?;
             Ok((object, self.judge(object, Moment::Present)?))
         }))
+    }
+
+    /// What a person said of a thing, as it was believed at a moment. What was taken back later was never right.
+    pub(super) fn answer(
+        &self,
+        object: ObjectKey,
+        moment: Moment,
+    ) -> Result<Option<RecordedAnswer>, StoreError> {
+        let as_of = match moment {
+            Moment::Present => return self.reader.present_answer(&self.household, object),
+            Moment::Past(as_of) => as_of,
+        };
+        let was_believed = |answer: &RecordedAnswer| {
+            answer.status == AnswerStatus::Answered
+                && answer.at <= as_of
+                && answer.retracted_at.is_none()
+                && answer.reopened_at.is_none_or(|reopened| reopened > as_of)
+        };
+        Ok(self.reader.answers(&self.household, object)?.into_iter().rfind(was_believed))
+    }
+
+    /// Whose a thing is after all, where its use since an answer speaks clearly for other owners than the person named.
+    pub(super) fn outdated(
+        &self,
+        object: &StoredObject,
+        answer: &RecordedAnswer,
+        as_of: DateTime,
+    ) -> Result<Option<OwnerSetDistribution>, StoreError> {
+        let roster = self.household.roster();
+        let answered = roster.owner_set(&answer.owners())?;
+        let (since, until) = (civil_seconds(answer.at), civil_seconds(as_of));
+        let log = self.reader.usage(&self.household, object.key, since.saturating_add(1), until)?;
+        let sessions = session_order(&log.events);
+        let posterior = since_answer(&sessions, roster.len(), answered, &EvidenceParameters::default());
+        Ok(posterior.filter(|posterior| posterior.probability(answered) <= 1.0 - OUTDATED))
+    }
+
+    /// Whether a person's answer about a thing is outdated at present.
+    ///
+    /// # Errors
+    /// Failures of the database.
+    pub(crate) fn is_reopened(&self, object: &StoredObject) -> Result<bool, StoreError> {
+        let Some(answer) = self.reader.present_answer(&self.household, object.key)? else { return Ok(false) };
+        Ok(self.outdated(object, &answer, self.present()?)?.is_some())
+    }
+
+    /// What is held of a thing whose answer is outdated. However probable that is, only a person can settle it.
+    fn reopened(
+        &self,
+        answer: RecordedAnswer,
+        distribution: OwnerSetDistribution,
+        context: GivenContext,
+    ) -> Judgement {
+        let scores = distribution.marginals(self.household.roster().len());
+        let thresholds = thresholds_of(Some(EMBEDDED_MODEL));
+        let mut assessment = thresholds.assess(&scores, &distribution, &ShareThresholds::default());
+        assessment.settled = false;
+        Judgement {
+            reading: Reading { owners: assessment.owners, outside_household: false },
+            confidence: assessment.confidence,
+            scores,
+            distribution,
+            assessment,
+            basis: Basis::Outdated(Box::new(answer)),
+            context,
+        }
     }
 
     fn answered(
@@ -183,29 +257,27 @@ impl Scene<'_> {
         };
         if moment != Moment::Present {
             for near in &mut context.nearby_objects {
-                self.hide_later(&near.id, as_of, &mut near.known_ownership)?;
+                self.known_then(&near.id, as_of, &mut near.known_ownership)?;
             }
             for alike in &mut context.similar_objects {
-                self.hide_later(&alike.id, as_of, &mut alike.known_ownership)?;
+                self.known_then(&alike.id, as_of, &mut alike.known_ownership)?;
             }
         }
         Ok(context)
     }
 
-    /// Hides what was not known of another thing's owners then. Of what a model concluded it is not known since when.
-    fn hide_later(
+    /// What was known of another thing's owners then. Of what a model concluded it is not known since when.
+    fn known_then(
         &self,
         id: &ObjectId,
         as_of: DateTime,
         known: &mut Option<KnownOwnership>,
     ) -> Result<(), StoreError> {
         let answer = match self.reader.object_key(id.as_str())? {
-            Some(key) => self.reader.present_answer(&self.household, key)?,
+            Some(key) => self.answer(key, Moment::Past(as_of))?,
             None => None,
         };
-        if answer.is_none_or(|answer| answer.at > as_of) {
-            *known = None;
-        }
+        *known = answer.map(|answer| answered_ownership(self.household.roster(), &answer.owners()));
         Ok(())
     }
 
@@ -226,7 +298,7 @@ impl Scene<'_> {
     pub(crate) fn evidence(&self, object: &StoredObject, judgement: &Judgement) -> Evidence {
         let context = &judgement.context;
         let answer = match &judgement.basis {
-            Basis::Answer(answer) => Some(AnswerEvidence {
+            Basis::Answer(answer) | Basis::Outdated(answer) => Some(AnswerEvidence {
                 question: answer.question.clone(),
                 answer: answer.answer.clone(),
                 answered_by: answer.answered_by.clone(),
@@ -277,6 +349,16 @@ impl Scene<'_> {
                 by: answer.answered_by.as_ref().and_then(|name| roster.index_of(name.as_str()).ok()),
                 on: answer.at.date(),
             },
+            Basis::Outdated(answer) => Conclusion::Outdated {
+                said: Reading {
+                    owners: roster.owner_set(&answer.owners()).unwrap_or_default(),
+                    outside_household: answer.owner_outside_household,
+                },
+                by: answer.answered_by.as_ref().and_then(|name| roster.index_of(name.as_str()).ok()),
+                on: answer.at.date(),
+                owners: judgement.reading.owners,
+                confidence: judgement.confidence,
+            },
             Basis::Model { .. } | Basis::Evidence => Conclusion::Inferred {
                 owners: judgement.reading.owners,
                 confidence: judgement.confidence,
@@ -288,7 +370,7 @@ impl Scene<'_> {
                     .collect(),
                 model: match &judgement.basis {
                     Basis::Model { name } => Some(name.as_deref().unwrap_or_default()),
-                    Basis::Answer(_) | Basis::Evidence => None,
+                    Basis::Answer(_) | Basis::Outdated(_) | Basis::Evidence => None,
                 },
             },
         };
@@ -343,7 +425,7 @@ impl Judgement {
     pub(crate) fn source(&self) -> Source {
         match self.basis {
             Basis::Answer(_) => Source::Answer,
-            Basis::Model { .. } | Basis::Evidence => Source::Inferred,
+            Basis::Outdated(_) | Basis::Model { .. } | Basis::Evidence => Source::Inferred,
         }
     }
 

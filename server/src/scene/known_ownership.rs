@@ -1,7 +1,7 @@
 //! What is reliably known of a thing's owners, for its neighbours and look-alikes (the paper's BUILD-KNOWN).
 
 use coin::roster::Roster;
-use coin_schemas::household::{Owners, Score, Scores};
+use coin_schemas::household::{Owners, Score, Scores, Source};
 use coin_schemas::tools::KnownOwnership;
 
 use crate::store::Belief;
@@ -20,6 +20,11 @@ pub(super) fn known_ownership(roster: &Roster, belief: &Belief) -> Option<KnownO
         Belief::Inferred(_) => return None,
     };
     Some(KnownOwnership { owners: belief.owners().clone(), scores, source: belief.source() })
+}
+
+/// What a person named.
+pub(super) fn answered_ownership(roster: &Roster, owners: &Owners) -> KnownOwnership {
+    KnownOwnership { owners: owners.clone(), scores: indicator(roster, owners), source: Source::Answer }
 }
 
 /// 1 for the owners and 0 for the other members.

@@ -19,7 +19,7 @@ pub(crate) struct Next<'a> {
 }
 
 impl Scene<'_> {
-    /// The thing about which the gate asks first. What a person would not tell is passed over, and what was asked about
+    /// The thing about which the gate asks first; one whose answer is outdated may be it. What a person would not tell is passed over, and what was asked about
     /// in vain comes after what was not.
     ///
     /// # Errors
@@ -30,10 +30,12 @@ impl Scene<'_> {
         let questions = self.reader.open_questions()?;
         let mut unsettled: BTreeMap<&ObjectId, (&StoredObject, Judgement)> = BTreeMap::new();
         for object in self.objects()? {
-            if matches!(beliefs.get(&object.key), Some(Belief::Answered { .. })) {
+            self.reader.go_on()?;
+            if matches!(beliefs.get(&object.key), Some(Belief::Answered { .. }))
+                && !self.is_reopened(object)?
+            {
                 continue;
             }
-            self.reader.go_on()?;
             let judgement = self.judge(object, Moment::Present)?;
             if !judgement.is_settled() {
                 unsettled.insert(&object.id, (object, judgement));

@@ -6,6 +6,7 @@ use coin_schemas::tools::{ListObjects, ListObjectsResult, ListedObject, MAX_LIMI
 use super::fields::{self, quoted};
 use super::{Effect, Tool, ToolError};
 use crate::cursor;
+use crate::scene::Scene;
 use crate::store::{Belief, Reader, Store, StoredObject};
 
 pub(super) struct ListObjectsTool;
@@ -29,27 +30,36 @@ impl Tool for ListObjectsTool {
         store.read(|reader| {
             let filter = Filter::new(reader, &arguments)?;
             let mut beliefs = reader.beliefs()?;
-            let matching: Vec<(StoredObject, Option<Belief>)> = reader
-                .objects()?
-                .into_iter()
-                .map(|object| {
-                    let belief = beliefs.remove(&object.key);
-                    (object, belief)
-                })
-                .filter(|(object, belief)| filter.accepts(object, belief.as_ref()))
-                .collect();
+            let scene = if beliefs.is_empty() { None } else { Some(Scene::new(reader)?) };
+            let mut matching: Vec<Held> = Vec::new();
+            for object in reader.objects()? {
+                let belief = beliefs.remove(&object.key);
+                let settled = match (&belief, &scene) {
+                    (Some(Belief::Answered { .. }), Some(scene)) => !scene.is_reopened(&object)?,
+                    (belief, _) => belief.as_ref().is_some_and(Belief::is_settled),
+                };
+                matching.push(Held { object, belief, settled });
+            }
+            matching.retain(|held| filter.accepts(held));
             let total = matching.len() as u64;
             let mut rest = matching
                 .into_iter()
-                .filter(|(object, _)| after.as_ref().is_none_or(|after| object.id.as_str() > after.as_str()))
+                .filter(|held| after.as_ref().is_none_or(|after| held.object.id.as_str() > after.as_str()))
                 .peekable();
-            let objects: Vec<ListedObject> =
-                rest.by_ref().take(limit).map(|(object, belief)| listed(&object, belief.as_ref())).collect();
+            let objects: Vec<ListedObject> = rest.by_ref().take(limit).map(listed).collect();
             let more = rest.peek().is_some();
             let next_cursor = objects.last().filter(|_| more).map(|last| cursor::after(last.id.as_str()));
             Ok(ListObjectsResult { objects, total, next_cursor })
         })
     }
+}
+
+/// A thing and what is believed of it.
+struct Held {
+    object: StoredObject,
+    belief: Option<Belief>,
+    /// Whether no question is needed.
+    settled: bool,
 }
 
 /// Which things are wanted.
@@ -74,18 +84,16 @@ impl Filter {
         Ok(Self { class, owner, settled: arguments.settled })
     }
 
-    fn accepts(&self, object: &StoredObject, belief: Option<&Belief>) -> bool {
-        let settled = belief.is_some_and(Belief::is_settled);
-        self.class.as_ref().is_none_or(|class| object.class.as_str().to_lowercase() == *class)
-            && self.settled.is_none_or(|wanted| wanted == settled)
-            && self
-                .owner
-                .as_ref()
-                .is_none_or(|owner| belief.is_some_and(|belief| belief.owners().contains(owner)))
+    fn accepts(&self, held: &Held) -> bool {
+        let owned_by = |owner| held.belief.as_ref().is_some_and(|belief| belief.owners().contains(owner));
+        self.class.as_ref().is_none_or(|class| held.object.class.as_str().to_lowercase() == *class)
+            && self.settled.is_none_or(|wanted| wanted == held.settled)
+            && self.owner.as_ref().is_none_or(owned_by)
     }
 }
 
-fn listed(object: &StoredObject, belief: Option<&Belief>) -> ListedObject {
+fn listed(Held { object, belief, settled }: Held) -> ListedObject {
+    let belief = belief.as_ref();
     ListedObject {
         id: object.id.clone(),
         name: display_name(&object.class),
@@ -93,7 +101,7 @@ fn listed(object: &StoredObject, belief: Option<&Belief>) -> ListedObject {
         room: object.room.clone(),
         owners: belief.map(Belief::owners).cloned().unwrap_or_default(),
         confidence: belief.map_or(0.0, Belief::confidence),
-        settled: belief.is_some_and(Belief::is_settled),
+        settled,
         source: belief.map(Belief::source),
     }
 }

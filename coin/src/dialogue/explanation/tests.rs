@@ -66,6 +66,18 @@ fn an_inference_is_told_with_its_doubt_and_its_grounds(
 }
 
 #[test]
+fn an_outdated_answer_is_told_with_what_speaks_against_it() {
+    let said = Reading { owners: set(&[2]), outside_household: false };
+    let on = "2025-01-19".parse().unwrap();
+    let by = Some(crate::support::user(1));
+    let outdated = Conclusion::Outdated { said, by, on, owners: set(&[0, 1]), confidence: 0.97 };
+    assert_eq!(
+        explained("scissors", outdated, Grounds::default()),
+        "Mary said on 2025-01-19 that the scissors in the office belong to Tom, but judging by who has used them since, they are now shared by Bob and Mary (97 %). Only a person can tell whether they changed hands."
+    );
+}
+
+#[test]
 fn an_answer_is_told_with_its_words() {
     let reading = Reading { owners: set(&[1]), outside_household: false };
     let on = "2025-01-19".parse().unwrap();

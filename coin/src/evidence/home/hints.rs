@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 
 use libm::{exp, log};
 
+use super::super::TRUST;
 use super::Thing;
-use super::weighed::TRUST;
 use crate::owners::OwnerSet;
 
 /// The exponents are 0 and 1/8, 1/4, 1/2, 1 of the largest one.

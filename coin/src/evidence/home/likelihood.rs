@@ -3,7 +3,7 @@
 use libm::{exp, log};
 
 use super::super::EvidenceParameters;
-use super::super::prior::{Candidates, relative_weights};
+use super::super::prior::{Candidates, log_mean, relative_weights};
 use super::habits::{EVENNESS, LENDING, Lending, MISTAKEN};
 use crate::owners::OwnerSet;
 use crate::roster::UserIndex;
@@ -277,10 +277,4 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
 fn cuts(sessions: usize) -> Vec<usize> {
     let places = (sessions - 1).min(MOST_CUTS);
     (1..=places).map(|cut| (cut * sessions).div_ceil(places + 1).min(sessions - 1)).collect()
-}
-
-fn log_mean(logarithms: &[f64]) -> f64 {
-    let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = logarithms.iter().map(|&logarithm| exp(logarithm - largest)).sum();
-    largest + log(sum / logarithms.len() as f64)
 }

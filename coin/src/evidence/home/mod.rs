@@ -19,14 +19,14 @@ use std::sync::Arc;
 use libm::exp;
 
 use super::prior::{Candidates, Opinion};
-use super::{EvidenceParameters, HabitSource, likeness_counts, log_likelihood};
+use super::{EvidenceParameters, HabitSource, Relation, likeness_counts, log_likelihood};
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::UserIndex;
 use company::in_company;
 use habits::Habits;
 use hints::Company;
 use likelihood::Accounts;
-use weighed::Weighed;
+use weighed::{Basis, Weighed};
 
 /// Where a thing has more candidate sets than this, as in a household of more than twelve, it is judged by itself with the
 /// bare formula of [`super::log_likelihood`]; so many people give their home no one habit.
@@ -167,10 +167,10 @@ impl HomeEvidence {
         let answers: Vec<Option<OwnerSet>> = told.iter().map(|told| told.answer).collect();
         let weighed: Vec<Arc<Weighed>> = (0..self.things.len())
             .map(|place| {
-                let answer = answers[place];
+                let basis = self.basis(place, &answers);
                 match before.map(|before| &before.weighed[place]) {
-                    Some(before) if before.answer == answer => Arc::clone(before),
-                    _ => Arc::new(self.weigh(place, answer, told[place].opinion)),
+                    Some(before) if before.basis == basis => Arc::clone(before),
+                    _ => Arc::new(self.weigh(place, basis, told[place].opinion)),
                 }
             })
             .collect();
@@ -211,7 +211,7 @@ impl HomeEvidence {
         opinion: Opinion<'_>,
     ) -> OwnerSetDistribution {
         let thing = &self.things[place];
-        let weighed = self.weigh(place, judgement.weighed[place].answer, opinion);
+        let weighed = self.weigh(place, judgement.weighed[place].basis.clone(), opinion);
         let belief = weighed.belief(thing, &judgement.habits, &self.parameters);
         thing.distribution(&in_company(&belief, judgement.company.get(place)))
     }
@@ -242,8 +242,18 @@ impl HomeEvidence {
         rivals.iter().take(MOST_RIVALS).map(left_by).fold(confidence, f64::min)
     }
 
-    fn weigh(&self, place: usize, answer: Option<OwnerSet>, opinion: Opinion<'_>) -> Weighed {
-        Weighed::new(&self.things[place], answer, opinion, &self.parameters)
+    fn basis(&self, place: usize, answers: &[Option<OwnerSet>]) -> Basis {
+        let thing = &self.things[place];
+        let near = thing.seen.near.iter();
+        let couplings = near.filter_map(|&(other, weight)| {
+            let owners = thing.candidates.narrowed((*answers.get(other)?)?)?;
+            Some((owners, self.parameters.coupling(Relation::Near { weight })))
+        });
+        Basis { answer: answers[place], couplings: couplings.collect() }
+    }
+
+    fn weigh(&self, place: usize, basis: Basis, opinion: Opinion<'_>) -> Weighed {
+        Weighed::new(&self.things[place], basis, opinion, &self.parameters)
     }
 
     /// p(habits | all things, all answers) over the grid, without what is negligible. Where habits are not learnt every

@@ -2,22 +2,28 @@
 
 use libm::log;
 
-use super::super::EvidenceParameters;
-use super::super::prior::{Candidates, Opinion, SizePrior, logarithms};
+use super::super::prior::{Candidates, Opinion, SizePrior, logarithms, with_relatives};
+use super::super::{EvidenceParameters, TRUST};
 use super::habits::{EVENNESS, Habits, LENDING, MISTAKEN, SIZES};
 use super::likelihood::Accounts;
 use super::{Thing, Use};
 use crate::owners::OwnerSet;
 
-/// How probable it is that a person's answer is right, as far as the habits of the home are learnt from it.
-pub(super) const TRUST: f64 = 0.95;
-
 /// A thing with the prior that what is told gives it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Weighed {
+    /// What it rests on; the same basis leads to the same weights.
+    pub(super) basis: Basis,
+    weights: Weights,
+}
+
+/// What the weights of a thing depend on, beside its own evidence and the opinion of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Basis {
     /// Whom a person named.
     pub(super) answer: Option<OwnerSet>,
-    weights: Weights,
+    /// The answered owners of near things by their places among the candidates, and how strongly they couple.
+    pub(super) couplings: Vec<(OwnerSet, f64)>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -36,17 +42,21 @@ enum Weights {
 impl Weighed {
     pub(super) fn new(
         thing: &Thing,
-        answer: Option<OwnerSet>,
+        basis: Basis,
         opinion: Opinion<'_>,
         parameters: &EvidenceParameters,
     ) -> Self {
         let candidates = &thing.candidates;
-        let prior = |sizes: SizePrior| candidates.own(opinion, sizes, parameters);
+        let prior = |sizes: SizePrior| {
+            let mut prior = candidates.own(opinion, sizes, parameters);
+            with_relatives(candidates.sets(), &mut prior, &basis.couplings);
+            prior
+        };
         let weights = match &thing.use_of_it {
             Use::Accounts(accounts) => {
                 let priors: Vec<Vec<f64>> = SIZES.map(prior).into();
                 let mixture = Mixture { candidates, accounts, priors: &priors, parameters };
-                let log_evidence = mixture.log_evidence(answer);
+                let log_evidence = mixture.log_evidence(basis.answer);
                 Weights::ByHabits { priors, log_evidence }
             }
             Use::Bare(use_of_it) => {
@@ -57,7 +67,7 @@ impl Weighed {
                 Weights::Alone { prior, belief }
             }
         };
-        Self { answer, weights }
+        Self { basis, weights }
     }
 
     /// ln p(use, answer | habits) at every point of the grid; empty where the thing says nothing of habits.

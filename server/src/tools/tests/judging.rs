@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::recording::answer;
+use super::recording::{answer, listed};
 use super::*;
 use crate::test_home;
 
@@ -157,4 +157,39 @@ fn a_thing_that_nobody_knows_is_asked_about_twice_and_after_the_others() {
         assert_ne!(other, id);
         done(&store, "record_answer", answer(other, "Bob's", &json!({"Bob": true})));
     }
+}
+
+/// Mary says that the key is Tom's; then Bob uses it every day.
+#[test]
+fn an_answer_that_use_no_longer_fits_is_opened_again() {
+    let store = test_home::store();
+    done(&store, "record_answer", answer("key", "Tom's", &json!({"Tom": true})));
+    let used = |days: std::ops::Range<u32>| {
+        let captions = days.map(
+            |day| json!({"object_id": "key", "caption": format!("2025-02-{day:02} 08:00 Bob takes the Key")}),
+        );
+        json!({"captions": captions.collect::<Vec<_>>()})
+    };
+    done(&store, "record_usage", used(1..4));
+    assert_eq!(whose(&store, "key")["source"], "answer", "three days may be a loan");
+    done(&store, "record_usage", used(4..12));
+    let after = whose(&store, "key");
+    assert_eq!(
+        (&after["owners"], &after["settled"], &after["source"]),
+        (&json!(["Bob"]), &json!(false), &json!("inferred"))
+    );
+    insta::assert_snapshot!(after["explanation"].as_str().unwrap());
+    assert_eq!(listed(&store, "key")["settled"], false);
+    let mut proposed = Vec::new();
+    while let Some(id) = done(&store, "next_question", json!({}))["object"]["id"].as_str().map(str::to_owned)
+    {
+        let owner = if id == "key" { "Bob" } else { "Mary" };
+        done(&store, "record_answer", answer(&id, "as said", &json!({owner: true})));
+        proposed.push(id);
+    }
+    assert!(proposed.contains(&"key".to_owned()), "{proposed:?}");
+    let settled = whose(&store, "key");
+    assert_eq!((&settled["owners"], &settled["settled"]), (&json!(["Bob"]), &json!(true)));
+    let before = done(&store, "whose_is", json!({"object_id": "key", "as_of": "2025-02-03T00:00:00"}));
+    assert_eq!(before["owners"], json!(["Tom"]), "{before}");
 }
