@@ -8,6 +8,7 @@ mod algorithm_1;
 mod coverage;
 mod exceptions;
 mod known_answers;
+mod outdated;
 mod reinference;
 mod run;
 mod run_laws;
