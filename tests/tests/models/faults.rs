@@ -265,7 +265,7 @@ fn where_no_server_listens_the_next_step_is_told() {
 #[test]
 fn a_server_that_dies_on_the_way_does_not_end_the_run() {
     let provider = ScriptedProvider::start(Script {
-        faults: FaultPlan::of(|occasion| (occasion.number > 6).then_some(Fault::Status(503))),
+        faults: FaultPlan::of(|occasion| (occasion.number > 2).then_some(Fault::Status(503))),
         ..Script::default()
     });
     let report = report(&provider, &small_house(), &[]);
