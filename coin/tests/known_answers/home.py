@@ -11,7 +11,8 @@ import json
 from itertools import combinations, product
 from math import exp, lgamma, log
 
-SIZES = [(0.75, 0.15), (0.60, 0.25), (0.45, 0.30)]
+SIZES = [(0.75, 0.15), (0.60, 0.25), (0.45, 0.30), (0.75, 0.05), (0.60, 0.08), (0.45, 0.11)]
+GROUPS, OF_GROUP_SIZE = SIZES[3:], 0.25
 LENDING = [(1.2, 10.8), (2.0, 8.0), (3.3, 6.7), (5.0, 7.5)]
 EVENNESS = [8.0, 25.0]
 MISTAKEN = [0.01, 0.06]
@@ -233,7 +234,7 @@ def judged(things, members, answers, alike, near):
     for sizes, lending, evenness, mistaken, single, shared in product(
         SIZES, LENDING, EVENNESS, MISTAKEN, SINGLE_KEPT, SHARED_KEPT
     ):
-        weight, beliefs, thoughts = 1.0, [], [{} for _ in things]
+        weight, beliefs, thoughts = OF_GROUP_SIZE * max(members - 2, 0) if sizes in GROUPS else 1.0, [], [{} for _ in things]
         for place, users in enumerate(things):
             joint = {}
             for owners in sets:

@@ -36,12 +36,21 @@ const SINGLE_KEPT: [f64; 2] = [0.2, 0.5];
 /// The share of the things of several owners that these use in turns.
 const SHARED_KEPT: [f64; 3] = [0.1, 0.35, 0.65];
 
-/// How many owners things have.
-pub(super) const SIZES: [SizePrior; 3] = [
+/// How many owners things have: in homes where what is shared is mostly everybody's, and then in homes of [`GROUPS`].
+pub(super) const SIZES: [SizePrior; 6] = [
     SizePrior { single: 0.75, everyone: 0.15 },
     SizePrior { single: 0.60, everyone: 0.25 },
     SizePrior { single: 0.45, everyone: 0.30 },
+    SizePrior { single: 0.75, everyone: 0.05 },
+    SizePrior { single: 0.60, everyone: 0.08 },
+    SizePrior { single: 0.45, everyone: 0.11 },
 ];
+
+/// From this place of [`SIZES`] on what is shared is mostly a group's.
+const GROUPS: usize = 3;
+
+/// How probable a home of groups is relative to another, for every size that there is between one person and everybody.
+const OF_GROUP_SIZE: f64 = 0.25;
 
 /// The number of points of the grid.
 pub(super) const HABITS: usize =
@@ -77,6 +86,12 @@ impl Habits {
                 shared_kept: SHARED_KEPT[place(SHARED_KEPT.len())],
             }
         })
+    }
+
+    /// How probable the point is before anything was seen, relative to others, in a home of so many people. The more there
+    /// are, the more groups they can form.
+    pub(super) fn prior(&self, people: usize) -> f64 {
+        if self.sizes < GROUPS { 1.0 } else { OF_GROUP_SIZE * people.saturating_sub(2) as f64 }
     }
 
     /// How probable it is that a thing of so many owners is used by them alone.

@@ -16,7 +16,7 @@ mod weighed;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use libm::exp;
+use libm::{exp, log};
 
 use super::prior::{Candidates, Opinion};
 use super::{EvidenceParameters, HabitSource, Relation, likeness_counts, log_likelihood};
@@ -256,10 +256,11 @@ impl HomeEvidence {
         Weighed::new(&self.things[place], basis, opinion, &self.parameters)
     }
 
-    /// p(habits | all things, all answers) over the grid, without what is negligible. Where habits are not learnt every
-    /// point is as probable as any other.
+    /// p(habits | all things, all answers) over the grid, without what is negligible. Where habits are not learnt they are as
+    /// probable as before anything was seen.
     fn habits(&self, weighed: &[Arc<Weighed>]) -> Vec<(Habits, f64)> {
-        let mut logarithms = vec![0.0; habits::HABITS];
+        let people = self.things.iter().map(|thing| thing.candidates.people()).max().unwrap_or(0);
+        let mut logarithms: Vec<f64> = Habits::all().map(|habits| log(habits.prior(people))).collect();
         if self.parameters.habits == HabitSource::Learnt {
             for thing in weighed {
                 logarithms.iter_mut().zip(thing.log_evidence()).for_each(|(sum, of_thing)| *sum += of_thing);
