@@ -1,9 +1,13 @@
 //! The gates: which thing is asked about next, if any.
 
+mod adaptive;
+
 use std::cmp::Ordering;
 
 use coin_schemas::household::ObjectId;
 use coin_schemas::report::Gate;
+
+pub use adaptive::{AdaptedThreshold, Held, TrackRecord};
 
 use crate::calibration::{Assessment, Thresholds, UNCALIBRATED_CONFIDENCE};
 
@@ -13,18 +17,21 @@ pub const MOST_TIMES_ASKED: u32 = 2;
 /// Whether the gate wants to ask about the thing.
 ///
 /// * `risk`: conf(o) < λ̂ (conformal risk control).
+/// * `adaptive`: the same, where no higher threshold follows from the answers ([`AdaptedThreshold`]).
 /// * `set`: the label-set prediction set does not hold exactly one owner set.
 /// * `paper`: cp_s(o) > q_cp.
 /// * `always`, `never`: as they say.
 ///
-/// Without a calibration the first three ask where the best owner set has less than
+/// Without a calibration the first four ask where the best owner set has less than
 /// [`UNCALIBRATED_CONFIDENCE`].
 pub fn wants_to_ask(gate: Gate, thresholds: &Thresholds, assessment: &Assessment) -> bool {
     match (gate, *thresholds) {
         (Gate::Always, _) => true,
         (Gate::Never, _) => false,
         (_, Thresholds::Uncalibrated) => assessment.confidence < UNCALIBRATED_CONFIDENCE,
-        (Gate::Risk, Thresholds::Calibrated { lambda, .. }) => assessment.confidence < lambda,
+        (Gate::Risk | Gate::Adaptive, Thresholds::Calibrated { lambda, .. }) => {
+            assessment.confidence < lambda
+        }
         (Gate::Set, Thresholds::Calibrated { .. }) => assessment.plausible_sets != 1,
         (Gate::Paper, Thresholds::Calibrated { q_cp, .. }) => assessment.uncertainty > q_cp,
     }
@@ -62,7 +69,7 @@ pub fn compare_priority(
             .uncertainty
             .total_cmp(&left.1.uncertainty)
             .then_with(|| right.1.prediction_set.len().cmp(&left.1.prediction_set.len())),
-        Gate::Risk | Gate::Set | Gate::Always | Gate::Never => {
+        Gate::Risk | Gate::Adaptive | Gate::Set | Gate::Always | Gate::Never => {
             left.1.confidence.total_cmp(&right.1.confidence)
         }
     };

@@ -17,6 +17,7 @@ use coin_schemas::report::{ContextSource, Estimator, Gate, Scoring, Stopped, Wit
 use coin_server::episode::LoadedEpisode;
 use thiserror::Error;
 
+use crate::cli::default_levels;
 use crate::client::ServerAddress;
 use crate::driver::Unobserved;
 use crate::home::{self, Home};
@@ -343,6 +344,7 @@ async fn score_loaded(
     let agent_settings = AgentSettings {
         gate: Gate::Never,
         thresholds: Thresholds::Uncalibrated,
+        risk: default_levels().risk,
         share: ShareThresholds::default(),
         max_questions: 0,
         reinference: Reinference::AnsweredContext,

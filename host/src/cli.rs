@@ -16,7 +16,8 @@ use crate::client::ServerAddress;
 use crate::generate::{GenerateArguments, HomerArguments};
 use crate::model::choice::ModelChoice;
 use crate::model::metered::TokenBudget;
-use crate::run::{Answers, CONCURRENCY, default_scoring};
+use crate::person::{Answers, ErrorRate};
+use crate::run::{CONCURRENCY, default_scoring};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -100,6 +101,9 @@ pub struct RunArguments {
     /// Which rule decides what is asked
     #[arg(long, value_enum, default_value_t = GateArgument::Risk)]
     pub gate: GateArgument,
+    /// Which share of the things the adaptive gate may leave wrong
+    #[arg(long, value_name = "LEVEL", default_value = DEFAULT_RISK, value_parser = level)]
+    pub risk: Level,
     /// Thresholds of the model, from `host calibrate` [default: those that come with the embedded model]
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
@@ -121,6 +125,9 @@ pub struct RunArguments {
     /// Seed of the simulated person
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
+    /// Let the simulated person be wrong in this share of the answers
+    #[arg(long, value_name = "SHARE", default_value = "0")]
+    pub wrong_answers: ErrorRate,
     /// Write the report to this file (JSON)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
@@ -322,6 +329,8 @@ impl From<ContextArgument> for ContextSource {
 pub enum GateArgument {
     /// Keep the share of wrong owner sets under the calibrated risk (conformal risk control)
     Risk,
+    /// The same with a threshold that the answers move: it keeps the share also in homes unlike those calibrated on
+    Adaptive,
     /// Ask where more than one owner set is plausible (conformal prediction over owner sets)
     Set,
     /// The paper's: cp_s against q_cp
@@ -336,6 +345,7 @@ impl From<GateArgument> for Gate {
     fn from(argument: GateArgument) -> Self {
         match argument {
             GateArgument::Risk => Self::Risk,
+            GateArgument::Adaptive => Self::Adaptive,
             GateArgument::Set => Self::Set,
             GateArgument::Paper => Self::Paper,
             GateArgument::Always => Self::Always,

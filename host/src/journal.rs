@@ -389,7 +389,7 @@ fn difference(of_run: &JournalHeading, now: &JournalHeading) -> Option<String> {
     if of_run.scoring != *scoring || of_run.withheld != *withheld || of_run.reinference != now.reinference {
         return Some("its scores were made in another way (--estimator, --context, --batch, --without or --reinference)".to_owned());
     }
-    if of_run.gate != now.gate || of_run.lambda != now.lambda {
+    if of_run.gate != now.gate || of_run.lambda != now.lambda || of_run.risk != now.risk {
         return Some("it had another gate or calibration".to_owned());
     }
     if of_run.answers != now.answers || of_run.seed != now.seed {

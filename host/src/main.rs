@@ -21,8 +21,8 @@ use coin_host::model::choice::{self, ModelSettings};
 use coin_host::observer::Chronicle;
 use coin_host::output::{EventLog, Printer, Progress, ResultFormat};
 use coin_host::pages::episode::{EpisodePage, episode as page};
-use coin_host::person::PersonKind;
-use coin_host::run::{Answers, EvidenceKept, ForeignCalibration, RunSettings, run_episode};
+use coin_host::person::{Answers, PersonKind};
+use coin_host::run::{EvidenceKept, ForeignCalibration, RunSettings, run_episode};
 use coin_schemas::report::Stopped;
 use coin_schemas::tools::FindDecision;
 use coin_server::output_file::{OutputFile, OutputFileError};
@@ -161,10 +161,12 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
         db: arguments.db.clone(),
         server: arguments.server.clone(),
         gate: arguments.gate.into(),
+        risk: arguments.risk,
         calibration,
         answers: arguments.answers.clone(),
         max_questions: arguments.max_questions,
         seed: arguments.seed,
+        wrong_answers: arguments.wrong_answers,
         reinference: arguments.reinference.into(),
         withheld: arguments.without.iter().copied().map(Into::into).collect(),
         foreign_calibration: match arguments.force_calibration {

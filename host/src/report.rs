@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use coin::agent::{AgentSettings, ObjectState};
+use coin::agent::{Agent, AgentSettings, ObjectState};
 use coin::calibration::Thresholds;
 use coin::metrics::{Judged, summarise};
 use coin::owners::OwnerSet;
@@ -12,7 +12,8 @@ use coin_schemas::calibration::Calibration;
 use coin_schemas::episode::{Episode, EpisodeObject, Truth};
 use coin_schemas::household::{ObjectId, Score, Source, UsageType};
 use coin_schemas::report::{
-    Cost, CurvePoint, MetricsReport, MetricsSummary, ObjectReport, Parameters, Report, Scoring, Withheld,
+    AdaptedThreshold, Cost, CurvePoint, Gate, MetricsReport, MetricsSummary, ObjectReport, Parameters,
+    Report, Scoring, Withheld,
 };
 use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS};
 
@@ -63,12 +64,25 @@ pub fn build(outcome: &Outcome, circumstances: Circumstances<'_>) -> Result<Repo
             Thresholds::Calibrated { .. } => calibration.cloned(),
             Thresholds::Uncalibrated => None,
         },
+        adapted: adapted(&outcome.agent),
         objects,
         questions: outcome.questions.clone(),
         curve,
         metrics,
         cost,
         stopped: outcome.stopped,
+    })
+}
+
+fn adapted(agent: &Agent) -> Option<AdaptedThreshold> {
+    let adapted = agent.adapted_threshold()?;
+    let record = agent.track_record();
+    let lambda = adapted.lambda().max(agent.settings().thresholds.lambda());
+    Some(AdaptedThreshold {
+        lambda: (lambda <= 1.0).then_some(lambda),
+        expected_errors: record.expected,
+        errors: record.wrong,
+        factor: record.factor(),
     })
 }
 
@@ -209,9 +223,11 @@ pub(crate) fn parameters(
         epsilon_in: agent.share.largest_spread,
         epsilon_out: agent.share.least_gap,
         max_questions: agent.max_questions,
+        risk: (agent.gate == Gate::Adaptive).then(|| agent.risk.value()),
         reinference: agent.reinference,
         withheld: withheld.clone(),
         scoring,
         answers: person.as_str().to_owned(),
+        wrong_answers: None,
     }
 }

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use coin::agent::{Agent, AgentSettings, Reinference};
 use coin::calibration::{EMBEDDED_MODEL, EMBEDDED_SCORING, Thresholds, embedded_calibration, score_of};
+use coin::conformal::Level;
 use coin::dialogue::Reading;
 use coin::evidence::EvidenceParameters;
 use coin::owners::OwnerSet;
@@ -16,7 +17,7 @@ use coin_schemas::episode::{Episode, Truth};
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::{ObjectId, Owners};
 use coin_schemas::journal::{JOURNAL_VERSION, JournalHeading};
-use coin_schemas::report::{Estimator, Gate, Report, Scoring, Withheld};
+use coin_schemas::report::{Estimator, Gate, Parameters, Report, Scoring, Withheld};
 use coin_schemas::tools::{RetractAnswer, RetractAnswerResult};
 use coin_server::episode::{EpisodeError, LoadedEpisode};
 use thiserror::Error;
@@ -32,7 +33,8 @@ use crate::journal::{Beginning, Journal, JournalError};
 use crate::model::ChatModel;
 use crate::pages::episode::Belief;
 use crate::person::{
-    Person, PersonError, PersonKind, ScriptError, ScriptedPerson, SimulatedPerson, TerminalPerson,
+    Answers, ErrorRate, Person, PersonError, PersonKind, ScriptError, ScriptedPerson, SimulatedPerson,
+    TerminalPerson,
 };
 use crate::report::{self, Circumstances};
 use crate::steps::Steps;
@@ -42,29 +44,6 @@ pub const CONCURRENCY: usize = 4;
 
 /// Where every answer bears on every thing, a home is judged anew after one answer for so many of its things.
 const THINGS_PER_ANSWER: usize = 100;
-
-/// Who answers the questions.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Answers {
-    /// A simulated person, who knows the truth of the episode.
-    Simulated,
-    /// The person at the terminal.
-    Terminal,
-    /// A file of answers.
-    Scripted(PathBuf),
-}
-
-impl std::str::FromStr for Answers {
-    type Err = std::convert::Infallible;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(match text {
-            "simulated" => Self::Simulated,
-            "terminal" => Self::Terminal,
-            file => Self::Scripted(PathBuf::from(file)),
-        })
-    }
-}
 
 /// The settings of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +56,8 @@ pub struct RunSettings {
     pub server: ServerAddress,
     /// Which rule decides what is asked.
     pub gate: Gate,
+    /// ε of the adaptive gate.
+    pub risk: Level,
     /// The thresholds; `None` takes those that come with the program, where it has some for the model.
     pub calibration: Option<Calibration>,
     /// Who answers.
@@ -85,6 +66,8 @@ pub struct RunSettings {
     pub max_questions: Option<usize>,
     /// The seed of the simulated person.
     pub seed: u64,
+    /// The share of the simulated person's answers that are wrong.
+    pub wrong_answers: ErrorRate,
     /// Which things are inferred again after an answer.
     pub reinference: Reinference,
     /// What the model is not told.
@@ -229,12 +212,16 @@ pub async fn run_episode(
     let agent_settings = AgentSettings {
         gate: settings.gate,
         thresholds: calibration.as_ref().map_or(Thresholds::Uncalibrated, Thresholds::from),
+        risk: settings.risk,
         share: ShareThresholds::default(),
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
         reinference: settings.reinference,
         answers_per_pass: 1,
     };
-    let parameters = report::parameters(&agent_settings, person.kind(), &settings.withheld, scoring);
+    let parameters = Parameters {
+        wrong_answers: wrong_answers(settings),
+        ..report::parameters(&agent_settings, person.kind(), &settings.withheld, scoring)
+    };
     let mut course =
         Course::new(agent_settings, settings.withheld.clone(), scoring, settings.concurrency).until(stop);
     if let Some(db) = &settings.db {
@@ -280,6 +267,12 @@ pub async fn run_episode(
     Ok(RunResult { report, episode: home.episode, history, evidence })
 }
 
+/// As the report has it: only where somebody is simulated and errs.
+fn wrong_answers(settings: &RunSettings) -> Option<f64> {
+    let rate = settings.wrong_answers;
+    (settings.answers == Answers::Simulated && rate != ErrorRate::NONE).then(|| rate.value())
+}
+
 fn beliefs(outcome: &Outcome, home: &Home) -> Vec<BTreeMap<ObjectId, Belief>> {
     let named = |standing: &Standing| Belief {
         owners: home.roster.owners(standing.owners),
@@ -314,6 +307,7 @@ fn heading(
         model: model.to_owned(),
         gate: settings.gate,
         lambda: calibration.map(|calibration| calibration.lambda),
+        risk: (settings.gate == Gate::Adaptive).then(|| settings.risk.value()),
         seed: settings.seed,
         reinference: settings.reinference,
         withheld: settings.withheld.iter().copied().collect(),
@@ -475,7 +469,7 @@ fn person(
         Answers::Simulated => {
             let truth =
                 truth.cloned().ok_or_else(|| RunError::NoTruth { episode: loaded.episode.name.clone() })?;
-            Box::new(SimulatedPerson::new(truth, users, settings.seed))
+            Box::new(SimulatedPerson::new(truth, users, settings.seed).erring(settings.wrong_answers))
         }
         Answers::Terminal => Box::new(TerminalPerson::at_the_prompt()?),
         Answers::Scripted(file) => Box::new(scripted(file, &loaded.episode)?),

@@ -298,8 +298,22 @@ pub enum Guarantee {
     /// A thing is settled without a question *and* wrong (at most this often): what risk control promises of the
     /// state before the first question.
     SettledWrong,
-    /// A thing is wrong when everything that was worth a question has been asked (at most this often).
+    /// A thing is wrong when everything that was worth a question to the risk gate has been asked (at most this often).
     WrongInTheEnd,
+    /// The same where one answer in twenty is wrong.
+    WrongDespiteErrors,
+    /// The same with the adaptive gate, where every answer is right.
+    WrongAdapted,
+}
+
+impl Guarantee {
+    /// Whether it is about what is wrong, which is promised to be rare, and not about what is right.
+    pub fn is_loss(self) -> bool {
+        match self {
+            Self::AnyOwner | Self::AllOwners | Self::OwnerSet => false,
+            Self::SettledWrong | Self::WrongInTheEnd | Self::WrongDespiteErrors | Self::WrongAdapted => true,
+        }
+    }
 }
 
 /// How often a promise was kept on households that were used for nothing else.
@@ -330,4 +344,8 @@ pub struct Coverage {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64")]
     pub over_splits: Option<f64>,
+    /// How many questions a home took, where it is about the state after them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
+    pub questions: Option<f64>,
 }

@@ -80,6 +80,10 @@ pub struct JournalHeading {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64")]
     pub lambda: Option<f64>,
+    /// ε of the adaptive gate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
+    pub risk: Option<f64>,
     /// The seed.
     pub seed: u64,
     /// Which things are inferred again after an answer.

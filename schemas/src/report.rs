@@ -24,6 +24,10 @@ pub struct Report {
     pub parameters: Parameters,
     /// The thresholds that were used; `null` where the model has none and no guarantee holds.
     pub calibration: Option<Calibration>,
+    /// Where the adaptive gate ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "AdaptedThreshold")]
+    pub adapted: Option<AdaptedThreshold>,
     /// Every thing, in the episode's order.
     pub objects: Vec<ObjectReport>,
     /// Every question, in the order asked.
@@ -40,12 +44,30 @@ pub struct Report {
     pub stopped: Stopped,
 }
 
+/// What the answers made of the threshold of the adaptive gate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AdaptedThreshold {
+    /// From which probability of its best owner set on a thing is settled in the end; absent where nothing is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64")]
+    pub lambda: Option<f64>,
+    /// How many answers were to differ from what was thought most probable, by how sure one was.
+    pub expected_errors: f64,
+    /// How many did.
+    pub errors: usize,
+    /// By what factor errors are held to be more frequent than they seem.
+    pub factor: f64,
+}
+
 /// Which rule decides what is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gate {
     /// Conformal risk control on the share of wrong owner sets (the default).
     Risk,
+    /// The same with a threshold that the answers move, so that the share is kept in a home unlike those calibrated on.
+    Adaptive,
     /// Conformal prediction over owner sets: ask where more than one set remains.
     Set,
     /// The paper's: cp_s against q_cp.
@@ -156,6 +178,9 @@ pub struct Parameters {
     pub epsilon_out: f64,
     /// The largest number of questions, Q_max.
     pub max_questions: usize,
+    /// What the adaptive gate lets be wrong in the end: a share of all things.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub risk: Option<f64>,
     /// Which things are inferred again after an answer.
     #[serde(default)]
     pub reinference: Reinference,
@@ -167,6 +192,9 @@ pub struct Parameters {
     pub scoring: Scoring,
     /// Who answered: `simulated`, `terminal` or `scripted`.
     pub answers: String,
+    /// Which share of the simulated person's answers was wrong on purpose.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrong_answers: Option<f64>,
 }
 
 /// What is concluded about one thing.

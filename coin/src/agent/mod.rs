@@ -17,11 +17,12 @@ use thiserror::Error;
 
 pub use effect::Effect;
 pub use event::{Event, Inference, Parts};
-pub use state::{Known, KnownSource, NOTABLE, ObjectState};
+pub use state::{DOUBTFUL, Known, KnownSource, NOTABLE, ObjectState};
 
 use crate::calibration::Thresholds;
+use crate::conformal::Level;
 use crate::dialogue::Reading;
-use crate::gate::{Candidate, first_to_ask, sort_ids, wants_to_ask};
+use crate::gate::{AdaptedThreshold, Candidate, Held, TrackRecord, first_to_ask, sort_ids, wants_to_ask};
 use crate::owners::OwnerSet;
 use crate::sharing::ShareThresholds;
 
@@ -36,6 +37,8 @@ pub struct AgentSettings {
     pub gate: Gate,
     /// What the rule compares with.
     pub thresholds: Thresholds,
+    /// ε of the adaptive gate: the share of all things that may be wrong in the end.
+    pub risk: Level,
     /// DETECT-SHARE.
     pub share: ShareThresholds,
     /// Q_max.
@@ -262,14 +265,49 @@ impl Agent {
         }
     }
 
-    /// The things that nobody has answered about and that the gate would have asked about.
+    /// The things that the gate would have asked about: those that nobody has answered about and that it does not settle, and
+    /// those of which an answer is to be confirmed.
     pub fn unsettled(&self) -> impl Iterator<Item = (&ObjectId, &ObjectState)> {
         let AgentSettings { gate, thresholds, .. } = &self.settings;
-        self.objects.iter().filter(|(_, state)| state.answer().is_none()).filter(|(_, state)| {
-            state
-                .assessment()
-                .map_or(*gate != Gate::Never, |assessment| wants_to_ask(*gate, thresholds, assessment))
+        let adapted = self.adapted_threshold();
+        self.objects.iter().filter(move |(_, state)| match (state.trust(), state.assessment()) {
+            // What was said twice stands.
+            (Some(_), _) if !state.may_be_asked() => false,
+            (Some(trust), _) => match gate {
+                // The paper takes every answer as it is.
+                Gate::Paper | Gate::Never => false,
+                Gate::Risk | Gate::Adaptive | Gate::Set | Gate::Always => {
+                    trust < DOUBTFUL || adapted.is_some_and(|adapted| !adapted.settles_answer(trust))
+                }
+            },
+            (None, None) => *gate != Gate::Never,
+            (None, Some(assessment)) => {
+                wants_to_ask(*gate, thresholds, assessment)
+                    || adapted.is_some_and(|adapted| !adapted.settles(assessment.confidence))
+            }
         })
+    }
+
+    /// How what was thought of things fared against the answers about them.
+    pub fn track_record(&self) -> TrackRecord {
+        let mut record = TrackRecord::default();
+        for (confidence, agrees) in self.objects.values().filter_map(ObjectState::claim) {
+            record.add(confidence, agrees);
+        }
+        record
+    }
+
+    /// The threshold of the adaptive gate, as the answers so far have it; `None` with another gate. What nobody can be asked
+    /// about any more is not counted.
+    pub fn adapted_threshold(&self) -> Option<AdaptedThreshold> {
+        let AgentSettings { gate, risk, .. } = self.settings;
+        let open = self.objects.values().filter(|state| state.may_be_asked());
+        let held = open.filter_map(|state| match state.trust() {
+            Some(trust) => Some(Held::Answered { trust }),
+            None => Some(Held::Inferred { confidence: state.assessment()?.confidence }),
+        });
+        (gate == Gate::Adaptive)
+            .then(|| AdaptedThreshold::new(held, self.objects.len(), risk, self.track_record()))
     }
 
     /// Lines 13 to 17 of Algorithm 1: stop where the gate finds nothing to ask, else ask about the least sure.

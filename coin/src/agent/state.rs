@@ -9,10 +9,15 @@ use coin_schemas::report::Gate;
 use super::{AgentSettings, Inference, KNOWN_CONFIDENCE, Parts};
 use crate::calibration::Assessment;
 use crate::dialogue::Reading;
+use crate::evidence::after_answer;
+use crate::gate::MOST_TIMES_ASKED;
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 
 /// A belief that moves by less than this is not told to anybody before the end of the run.
 pub const NOTABLE: f64 = 0.005;
+
+/// An answer that is less probably right than this, by everything that is known of the thing, is asked to be confirmed.
+pub const DOUBTFUL: f64 = 0.5;
 
 /// What is reliably known of a thing's owners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -40,6 +45,11 @@ pub struct ObjectState {
     /// Whether the belief has moved a little since it was last stored.
     unrecorded: bool,
     answer: Option<Reading>,
+    /// What is thought of the thing when the answers are taken for evidence; `None` where nobody has answered, or nothing was
+    /// thought of it before.
+    weighed: Option<OwnerSetDistribution>,
+    /// How sure one was before the answer, and whether that was right.
+    claim: Option<(f64, bool)>,
     times_asked: u32,
     closed_to_questions: bool,
     problem: Option<String>,
@@ -76,6 +86,20 @@ impl ObjectState {
     /// The answer that settled whose the thing is.
     pub fn answer(&self) -> Option<Reading> {
         self.answer
+    }
+
+    /// How probably the answer is right, as people err now and then and other evidence speaks for or against it; 1 where
+    /// there is none. `None` where nobody has answered.
+    pub fn trust(&self) -> Option<f64> {
+        let reading = self.answer?;
+        let weighed = self.weighed.as_ref().filter(|_| !reading.owners.is_empty());
+        Some(weighed.map_or(1.0, |weighed| weighed.probability(reading.owners)))
+    }
+
+    /// The probability of the best owner set before the answer, and whether it was the one that the person named. `None`
+    /// where nobody has answered, or nothing was thought of the thing before.
+    pub(super) fn claim(&self) -> Option<(f64, bool)> {
+        self.claim
     }
 
     /// The owners: answered ones, else the model's best set (with the paper's gate, the set of
@@ -126,7 +150,7 @@ impl ObjectState {
     }
 
     pub(super) fn may_be_asked(&self) -> bool {
-        !self.closed_to_questions
+        !self.closed_to_questions && self.times_asked < MOST_TIMES_ASKED
     }
 
     pub(super) fn close_to_questions(&mut self) {
@@ -139,7 +163,7 @@ impl ObjectState {
             settings.thresholds.assess(&inference.scores, &inference.distribution, &settings.share);
         let owners = match settings.gate {
             Gate::Paper => crate::sharing::owner_set(&inference.scores, &settings.share),
-            Gate::Risk | Gate::Set | Gate::Always | Gate::Never => assessment.owners,
+            Gate::Risk | Gate::Adaptive | Gate::Set | Gate::Always | Gate::Never => assessment.owners,
         };
         self.problem.clone_from(&inference.problem);
         self.unrecorded = true;
@@ -180,8 +204,17 @@ impl ObjectState {
 
     pub(super) fn apply_reading(&mut self, reading: Reading) {
         self.times_asked += 1;
-        if !reading.is_unresolved() {
-            self.answer = Some(reading);
+        if reading.is_unresolved() {
+            return;
         }
+        if let Some(belief) = &self.belief {
+            let Belief { inference, assessment, .. } = &**belief;
+            if self.answer.is_none() {
+                self.claim = Some((assessment.confidence, reading.owners == assessment.owners));
+            }
+            let before = self.weighed.as_ref().unwrap_or(&inference.distribution);
+            self.weighed = Some(after_answer(before, reading.owners, inference.scores.len()));
+        }
+        self.answer = Some(reading);
     }
 }

@@ -61,7 +61,7 @@ const FILES: [(Scoring, &[Withheld], NonconformityScore, &str); 6] = [
 pub fn score_of(gate: Gate) -> NonconformityScore {
     match gate {
         Gate::Paper => NonconformityScore::AnyOwner,
-        Gate::Risk | Gate::Set | Gate::Always | Gate::Never => NonconformityScore::AllOwners,
+        Gate::Risk | Gate::Adaptive | Gate::Set | Gate::Always | Gate::Never => NonconformityScore::AllOwners,
     }
 }
 

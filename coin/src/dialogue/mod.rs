@@ -3,6 +3,7 @@
 
 mod answer;
 mod choices;
+mod confirmation;
 mod explanation;
 mod question;
 pub(crate) mod thing;
@@ -10,6 +11,7 @@ pub(crate) mod wording;
 
 pub use answer::{Reading, read_answer};
 pub use choices::{Choice, Meaning, choices, meaning_of};
+pub use confirmation::{Doubt, word_confirmation};
 pub use explanation::{
     Conclusion, Explained, Grounds, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };

@@ -8,6 +8,7 @@
 //! Dirichlet–multinomial). In both the prior knows how many owners things have, what common sense expects of the class,
 //! and the answered owners of things around.
 
+mod answer;
 mod context;
 pub mod home;
 mod newcomers;
@@ -16,6 +17,7 @@ mod prior;
 
 use libm::{lgamma, log};
 
+pub use answer::after_answer;
 pub use context::WeighedContext;
 pub use newcomers::Arrivals;
 pub use outdated::{OUTDATED, since_answer};

@@ -4,7 +4,9 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod adaptive;
 mod algorithm_1;
+mod confirmation;
 mod coverage;
 mod exceptions;
 mod known_answers;

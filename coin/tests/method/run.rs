@@ -2,6 +2,7 @@
 
 use coin::agent::{Agent, AgentSettings, Effect, Event, Inference, ObjectState, Reinference};
 use coin::calibration::Thresholds;
+use coin::conformal::Level;
 use coin::dialogue::Reading;
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::sharing::ShareThresholds;
@@ -22,6 +23,7 @@ pub(crate) fn the_papers() -> AgentSettings {
     AgentSettings {
         gate: Gate::Paper,
         thresholds: CALIBRATED,
+        risk: Level::new(0.012).unwrap(),
         share: ShareThresholds::default(),
         max_questions: usize::MAX,
         reinference: Reinference::EveryUnasked,

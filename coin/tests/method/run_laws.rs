@@ -106,12 +106,20 @@ impl World {
                         );
                     }
                     Effect::Ask { object } => {
-                        assert!(!closed.contains(object), "{object} was declined or answered before");
+                        assert!(!closed.contains(object), "{object} was declined or a stranger's");
+                        let thing = agent.object(object).unwrap();
+                        if let Some(trust) = thing.trust() {
+                            assert!(trust < 1.0, "{object} was answered, and nothing speaks against it");
+                            assert_ne!(
+                                self.settings.gate,
+                                Gate::Paper,
+                                "the paper takes answers as they are"
+                            );
+                        }
                         let reply = self.reply(object, questions);
                         questions += 1;
                         *asked.entry(object.clone()).or_default() += 1;
-                        let is_open = reply == unresolved();
-                        if !is_open {
+                        if matches!(reply, Event::Declined) || reply == owned_by_a_stranger() {
                             closed.insert(object.clone());
                         }
                         queue = vec![reply];
@@ -161,6 +169,7 @@ fn assert_misplaced_events_are_refused(agent: &Agent, awaited: &[Event], object:
 fn any_world() -> impl Strategy<Value = World> {
     let gate = prop_oneof![
         Just(Gate::Risk),
+        Just(Gate::Adaptive),
         Just(Gate::Set),
         Just(Gate::Paper),
         Just(Gate::Always),
@@ -192,9 +201,11 @@ fn unsettled<'a>(world: &'a World, agent: &'a Agent) -> impl Iterator<Item = Obj
     let AgentSettings { gate, thresholds, .. } = &world.settings;
     world.objects().into_iter().filter(move |object| {
         let thing = agent.object(object).unwrap();
-        let wanted = thing
-            .assessment()
-            .map_or(*gate != Gate::Never, |thought| wants_to_ask(*gate, thresholds, thought));
+        let adapted = agent.adapted_threshold();
+        let wanted = thing.assessment().map_or(*gate != Gate::Never, |thought| {
+            wants_to_ask(*gate, thresholds, thought)
+                || adapted.is_some_and(|adapted| !adapted.settles(thought.confidence))
+        });
         thing.answer().is_none() && wanted
     })
 }
@@ -226,6 +237,19 @@ proptest! {
             Stopped::MaxQuestions => prop_assert_eq!(trace.agent.questions(), world.settings.max_questions),
             Stopped::NothingLeftToAsk => prop_assert!(!open.is_empty()),
             Stopped::Budget | Stopped::Interrupted => prop_assert!(false, "nobody ended the run"),
+        }
+    }
+
+    /// What was said last stands, however it was doubted.
+    #[test]
+    fn nobody_is_contradicted(world in any_world()) {
+        let trace = world.run();
+        for object in world.objects() {
+            let thing = trace.agent.object(&object).unwrap();
+            if let Some(reading) = thing.answer() {
+                prop_assert_eq!(thing.owners(), reading.owners);
+                prop_assert!(thing.trust().is_some_and(|trust| (0.0..=1.0).contains(&trust)));
+            }
         }
     }
 

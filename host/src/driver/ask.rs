@@ -1,7 +1,7 @@
 //! One question: QUESTION-GENERATION, the person, UNDERSTAND-ANSWER, and the record of the answer.
 
-use coin::agent::{Agent, Event};
-use coin::dialogue::Reading;
+use coin::agent::{Agent, DOUBTFUL, Event, ObjectState};
+use coin::dialogue::{Doubt, Reading, word_confirmation};
 use coin::owners::OwnerSet;
 use coin::roster::Roster;
 use coin_schemas::events::LogEvent;
@@ -179,7 +179,7 @@ impl Run<'_> {
         let worded = tokio::select! {
             biased;
             () = stop.cancelled() => return Ok((put, Reply::Ends(Stopped::Interrupted))),
-            worded = self.driver.word_question(&thing, &scores, state.times_asked()) => worded?,
+            worded = self.driver.word(&thing, &scores, &state) => worded?,
         };
         let Some(question) = worded else { return Ok((put, Reply::Ends(Stopped::Budget))) };
         put.question.clone_from(&question);
@@ -260,6 +260,21 @@ impl Driver<'_> {
         let recorded: RecordAnswerResult = self.server.call("record_answer", &arguments).await?;
         debug_assert_eq!(recorded.status, question.status);
         Ok(())
+    }
+
+    /// A question, or whether an answer was right, which no model has to word; `None` where no more tokens may be spent.
+    async fn word(
+        &mut self,
+        thing: &TaskObject,
+        scores: &[Score],
+        state: &ObjectState,
+    ) -> Result<Option<String>, DriveError> {
+        let (Some(reading), Some(trust)) = (state.answer(), state.trust()) else {
+            return self.word_question(thing, scores, state.times_asked()).await;
+        };
+        let doubt = if trust < DOUBTFUL { Doubt::Contradicted } else { Doubt::Unconfirmed };
+        let described = (thing.class.as_str(), thing.room.as_deref(), thing.position.metres());
+        Ok(Some(word_confirmation(self.roster, described, reading.owners, doubt)))
     }
 
     /// A question that a model cannot word is worded without one, so that a person can still be asked; `None` where no

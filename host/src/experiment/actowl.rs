@@ -29,7 +29,7 @@ pub(super) async fn run(
 ) -> Result<MethodOutcome, RunError> {
     let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
     let steps = Steps::new(model, &home.server, &home.roster, &BTreeSet::new(), Scoring::default());
-    let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
+    let mut person = judged.person(seed);
 
     let objects = &judged.loaded.episode.objects;
     let classes: BTreeSet<ClassLabel> = objects.iter().map(|object| object.class.clone()).collect();

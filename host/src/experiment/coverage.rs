@@ -9,7 +9,8 @@ use coin::conformal::{label_set, split};
 use coin::evidence::EvidenceParameters;
 use coin::statistics::clopper_pearson;
 use coin_schemas::calibration::{Calibration, History, NonconformityScore};
-use coin_schemas::experiment::{Coverage, Guarantee, Method};
+use coin_schemas::experiment::{Coverage, Guarantee};
+use coin_schemas::report::Gate;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -24,6 +25,7 @@ use crate::calibrate::{HomeScoring, ScoredHome, score_homes};
 use crate::generate::{self, Protocol, RoutineSettings};
 use crate::model::ChatModel;
 use crate::parallel;
+use crate::person::ErrorRate;
 use crate::run::default_scoring;
 
 /// The homes that thresholds are made from where none are given: those of the built-in calibration.
@@ -76,7 +78,10 @@ impl Promises {
             Guarantee::AllOwners => sample.owners.is_subset(members(&self.all_owners)),
             Guarantee::OwnerSet => label_set::prediction_set(&sample.distribution, self.all_owners.q_set)
                 .contains(&sample.owners),
-            Guarantee::SettledWrong | Guarantee::WrongInTheEnd => {
+            Guarantee::SettledWrong
+            | Guarantee::WrongInTheEnd
+            | Guarantee::WrongDespiteErrors
+            | Guarantee::WrongAdapted => {
                 let (owners, confidence) = sample.distribution.best();
                 confidence >= self.all_owners.lambda && owners != sample.owners
             }
@@ -84,16 +89,20 @@ impl Promises {
     }
 
     fn promised(&self, guarantee: Guarantee) -> f64 {
-        match guarantee {
-            Guarantee::AnyOwner | Guarantee::AllOwners | Guarantee::OwnerSet => 1.0 - self.all_owners.alpha,
-            Guarantee::SettledWrong | Guarantee::WrongInTheEnd => self.all_owners.risk,
-        }
+        if guarantee.is_loss() { self.all_owners.risk } else { 1.0 - self.all_owners.alpha }
     }
 }
 
 /// What is known before a question is asked.
 const AT_ONCE: [Guarantee; 4] =
     [Guarantee::AnyOwner, Guarantee::AllOwners, Guarantee::OwnerSet, Guarantee::SettledWrong];
+
+/// What is known when the questions were asked, and who asked them and who answered.
+const IN_THE_END: [(Guarantee, Gate, ErrorRate); 3] = [
+    (Guarantee::WrongInTheEnd, Gate::Risk, ErrorRate::NONE),
+    (Guarantee::WrongDespiteErrors, Gate::Risk, ErrorRate::ONE_IN_TWENTY),
+    (Guarantee::WrongAdapted, Gate::Adaptive, ErrorRate::NONE),
+];
 
 /// Counts how often every guarantee held, for each kind of home.
 pub(super) async fn measure(
@@ -166,7 +175,7 @@ async fn of_kind(
     let homes = make(protocol, JUDGED_SEED, households, folder.path())?;
     let judged = score(&homes, settings, model, progress).await?;
     let same_kind = protocol == Protocol::Week && settings.calibrate_on.is_empty();
-    let row = |guarantee, count: usize, things: usize, over_splits| {
+    let row = |guarantee, count: usize, things: usize| {
         let (low, high) = clopper_pearson(count, things, INTERVAL_LEVEL);
         Coverage {
             protocol: protocol.name().to_owned(),
@@ -178,14 +187,15 @@ async fn of_kind(
             share: count as f64 / things.max(1) as f64,
             low,
             high,
-            over_splits,
+            over_splits: None,
+            questions: None,
         }
     };
     let mut rows = Vec::new();
     for guarantee in AT_ONCE {
         let things = judged.iter().flat_map(|home| &home.samples);
         let count = things.clone().filter(|sample| promises.holds(guarantee, sample)).count();
-        rows.push(row(guarantee, count, things.count(), None));
+        rows.push(row(guarantee, count, things.count()));
     }
     if same_kind {
         let means = over_splits(calibrated_on, &judged, settings, model.name())?;
@@ -193,8 +203,11 @@ async fn of_kind(
             row.over_splits = Some(mean);
         }
     }
-    let (wrong, things) = wrong_in_the_end(&homes, promises, settings, model, progress).await?;
-    rows.push(row(Guarantee::WrongInTheEnd, wrong, things, None));
+    for (guarantee, gate, wrong_answers) in IN_THE_END {
+        let end = asked(&homes, (gate, wrong_answers), promises, settings, model, progress).await?;
+        let questions = Some(end.questions as f64 / households.max(1) as f64);
+        rows.push(Coverage { questions, ..row(guarantee, end.wrong, end.things) });
+    }
     Ok(rows)
 }
 
@@ -222,14 +235,23 @@ fn over_splits(
     Ok(sums.map(|sum| sum / SPLITS as f64))
 }
 
-/// Lets COIN ask in every home, and counts what is wrong when it is done.
-async fn wrong_in_the_end(
+/// What came of the questions in some homes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct End {
+    wrong: usize,
+    things: usize,
+    questions: usize,
+}
+
+/// Lets COIN ask in every home with a gate, where people err in some of their answers.
+async fn asked(
     homes: &[PathBuf],
+    (gate, wrong_answers): (Gate, ErrorRate),
     promises: &Promises,
     settings: &ExperimentSettings,
     model: &Arc<dyn ChatModel>,
     progress: &mut (dyn Progress + Send),
-) -> Result<(usize, usize), ExperimentError> {
+) -> Result<End, ExperimentError> {
     let calibrations: Arc<Calibrations> =
         Arc::new([(default_kind(model.name()), Some(promises.all_owners.clone()))].into());
     let (concurrency, seed) = (settings.concurrency, settings.seed);
@@ -237,23 +259,32 @@ async fn wrong_in_the_end(
         let (model, calibrations) = (Arc::clone(model), Arc::clone(&calibrations));
         async move {
             let home = load_home(&folder).await?;
-            let outcome = methods::run(Method::Coin, &home, model.as_ref(), &calibrations, concurrency, seed)
-                .await
-                .map_err(|source| ExperimentError::Episode { episode: folder, source: Box::new(source) })?;
-            Ok::<_, ExperimentError>(wrong(&outcome, &home))
+            let model = model.as_ref();
+            let outcome =
+                methods::with_gate(gate, wrong_answers, &home, model, &calibrations, concurrency, seed)
+                    .await
+                    .map_err(|source| ExperimentError::Episode {
+                        episode: folder,
+                        source: Box::new(source),
+                    })?;
+            Ok::<_, ExperimentError>(end(&outcome, &home))
         }
     });
     progress.begin(homes.len(), "homes asked");
     let counted = parallel::in_order(jobs, || progress.step()).await?;
     progress.end();
-    Ok(counted.into_iter().fold((0, 0), |(wrong, things), home| (wrong + home.0, things + home.1)))
+    Ok(counted.into_iter().fold(End::default(), |all, home| End {
+        wrong: all.wrong + home.wrong,
+        things: all.things + home.things,
+        questions: all.questions + home.questions,
+    }))
 }
 
-fn wrong(outcome: &MethodOutcome, home: &JudgedHome) -> (usize, usize) {
+fn end(outcome: &MethodOutcome, home: &JudgedHome) -> End {
     let owners = home.true_owners();
-    let Some(last) = outcome.history.last() else { return (0, 0) };
+    let Some((last, before)) = outcome.history.split_last() else { return End::default() };
     let wrong = owners.iter().filter(|(object, truth)| last.get(**object) != Some(truth)).count();
-    (wrong, owners.len())
+    End { wrong, things: owners.len(), questions: before.len() }
 }
 
 #[cfg(test)]

@@ -177,6 +177,7 @@ impl Trial<'_> {
             let settings = AgentSettings {
                 gate,
                 thresholds,
+                risk: self.settings.levels.risk,
                 share: ShareThresholds::default(),
                 max_questions: home.loaded.episode.objects.len(),
                 reinference: Reinference::AnsweredContext,
@@ -185,7 +186,7 @@ impl Trial<'_> {
             let course =
                 Course::new(settings, BTreeSet::new(), scoring, concurrency).with_parameters(parameters);
             async move {
-                let outcome = methods::carried_out(&home, model.as_ref(), course, seed).await;
+                let outcome = methods::carried_out(&home, model.as_ref(), course, home.person(seed)).await;
                 scored(outcome, &home)
             }
         });

@@ -15,11 +15,12 @@ use coin_schemas::household::ObjectId;
 use coin_schemas::report::{Cost, Gate, Scoring, Withheld};
 
 use super::{Calibrations, JudgedHome, actowl};
+use crate::cli::default_levels;
 use crate::client::ServerAddress;
 use crate::driver::{Standing, Unobserved};
 use crate::home::Home;
 use crate::model::ChatModel;
-use crate::person::SimulatedPerson;
+use crate::person::{ErrorRate, SimulatedPerson};
 use crate::run::{Course, RunError, default_scoring, drive};
 
 /// What came of one run of one method.
@@ -48,16 +49,17 @@ enum Scorer {
     ModelAlone,
 }
 
+const COIN: Variant = Variant {
+    gate: Gate::Risk,
+    reinference: Reinference::AnsweredContext,
+    withheld: &[],
+    scorer: Scorer::Ours,
+};
+
 fn variant(method: Method) -> Option<Variant> {
-    let coin = Variant {
-        gate: Gate::Risk,
-        reinference: Reinference::AnsweredContext,
-        withheld: &[],
-        scorer: Scorer::Ours,
-    };
-    let the_papers = Variant { scorer: Scorer::ModelAlone, ..coin };
+    let the_papers = Variant { scorer: Scorer::ModelAlone, ..COIN };
     match method {
-        Method::Coin => Some(coin),
+        Method::Coin => Some(COIN),
         Method::CoinPaper => {
             Some(Variant { gate: Gate::Paper, reinference: Reinference::EveryUnasked, ..the_papers })
         }
@@ -66,9 +68,9 @@ fn variant(method: Method) -> Option<Variant> {
             withheld: &[Withheld::Background, Withheld::Usage],
             ..the_papers
         }),
-        Method::NoQuestions => Some(Variant { gate: Gate::Never, ..coin }),
-        Method::NoBackground => Some(Variant { withheld: &[Withheld::Background], ..coin }),
-        Method::NoUsage => Some(Variant { withheld: &[Withheld::Usage], ..coin }),
+        Method::NoQuestions => Some(Variant { gate: Gate::Never, ..COIN }),
+        Method::NoBackground => Some(Variant { withheld: &[Withheld::Background], ..COIN }),
+        Method::NoUsage => Some(Variant { withheld: &[Withheld::Usage], ..COIN }),
         Method::Actowl | Method::LastUser | Method::Frequency => None,
     }
 }
@@ -114,7 +116,9 @@ pub(super) async fn run(
 ) -> Result<MethodOutcome, RunError> {
     let started = Instant::now();
     let mut outcome = match (method, variant(method)) {
-        (_, Some(variant)) => agent(variant, judged, model, calibrations, concurrency, seed).await?,
+        (_, Some(variant)) => {
+            agent(variant, judged, model, calibrations, concurrency, judged.person(seed)).await?
+        }
         (Method::Actowl, None) => actowl::run(judged, model, seed).await?,
         (Method::Frequency, None) => heuristic(judged, frequency),
         (_, None) => heuristic(judged, last_user),
@@ -123,13 +127,27 @@ pub(super) async fn run(
     Ok(outcome)
 }
 
+/// Runs COIN with a gate, where people err in some of their answers.
+pub(super) async fn with_gate(
+    gate: Gate,
+    wrong_answers: ErrorRate,
+    judged: &JudgedHome,
+    model: &dyn ChatModel,
+    calibrations: &Calibrations,
+    concurrency: usize,
+    seed: u64,
+) -> Result<MethodOutcome, RunError> {
+    let person = judged.person(seed).erring(wrong_answers);
+    agent(Variant { gate, ..COIN }, judged, model, calibrations, concurrency, person).await
+}
+
 async fn agent(
     variant: Variant,
     judged: &JudgedHome,
     model: &dyn ChatModel,
     calibrations: &Calibrations,
     concurrency: usize,
-    seed: u64,
+    person: SimulatedPerson,
 ) -> Result<MethodOutcome, RunError> {
     let kind = variant.calibration(model.name());
     let settings = AgentSettings {
@@ -138,13 +156,14 @@ async fn agent(
             .get(&kind)
             .and_then(Option::as_ref)
             .map_or(Thresholds::Uncalibrated, Thresholds::from),
+        risk: default_levels().risk,
         share: ShareThresholds::default(),
         max_questions: judged.loaded.episode.objects.len(),
         reinference: variant.reinference,
         answers_per_pass: 1,
     };
     let course = Course::new(settings, kind.withheld, kind.scoring, concurrency);
-    carried_out(judged, model, course, seed).await
+    carried_out(judged, model, course, person).await
 }
 
 /// Runs the agent in a home of its own, from the captions to the last answer of a simulated person.
@@ -152,10 +171,9 @@ pub(super) async fn carried_out(
     judged: &JudgedHome,
     model: &dyn ChatModel,
     course: Course,
-    seed: u64,
+    mut person: SimulatedPerson,
 ) -> Result<MethodOutcome, RunError> {
     let home = Home::open(judged.loaded.clone(), None, &ServerAddress::InProcess).await?;
-    let mut person = SimulatedPerson::new(judged.truth.clone(), judged.loaded.episode.users.clone(), seed);
     let (outcome, cost) = drive(&home, course, model, &mut person, &mut Unobserved).await?;
     home.server.close().await;
     let owners = |standings: BTreeMap<ObjectId, Standing>| {
@@ -171,6 +189,11 @@ fn heuristic(judged: &JudgedHome, owner: impl Fn(&[UsageEvent]) -> OwnerSet) -> 
 }
 
 impl JudgedHome {
+    /// The people of the home, who know the truth.
+    pub(super) fn person(&self, seed: u64) -> SimulatedPerson {
+        SimulatedPerson::new(self.truth.clone(), self.loaded.episode.users.clone(), seed)
+    }
+
     /// The events of every thing in time order, up to the episode's present.
     fn usage(&self) -> BTreeMap<ObjectId, Vec<UsageEvent>> {
         let mut events: BTreeMap<ObjectId, Vec<UsageEvent>> =

@@ -30,6 +30,7 @@ fn heading() -> JournalHeading {
         model: "embedded".to_owned(),
         gate: Gate::Risk,
         lambda: Some(0.7),
+        risk: None,
         seed: 0,
         reinference: Reinference::default(),
         withheld: Vec::new(),

@@ -10,6 +10,7 @@ pub mod simulated;
 pub mod terminal;
 
 use std::fmt;
+use std::path::PathBuf;
 
 use async_trait::async_trait;
 use coin_schemas::household::{ObjectId, Score, UserName};
@@ -18,7 +19,7 @@ use thiserror::Error;
 
 pub use answer::{PreviousAnswer, Response, Understood};
 pub use scripted::{ScriptError, ScriptedPerson};
-pub use simulated::SimulatedPerson;
+pub use simulated::{ErrorRate, SimulatedPerson};
 pub use terminal::TerminalPerson;
 
 /// A member of the household, as somebody who may own the thing.
@@ -47,6 +48,29 @@ pub struct PutQuestion<'a> {
     pub before: Option<&'a PreviousAnswer>,
     /// How many more things may be asked about after this one, at most; `None` where that is not known.
     pub remaining: Option<usize>,
+}
+
+/// Who answers the questions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Answers {
+    /// A simulated person, who knows the truth of the episode.
+    Simulated,
+    /// The person at the terminal.
+    Terminal,
+    /// A file of answers.
+    Scripted(PathBuf),
+}
+
+impl std::str::FromStr for Answers {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "simulated" => Self::Simulated,
+            "terminal" => Self::Terminal,
+            file => Self::Scripted(PathBuf::from(file)),
+        })
+    }
 }
 
 /// What kind of person answers; a report names it.

@@ -4,6 +4,7 @@
 //! of questions changes no answer. Every wording says the whole truth and nothing that the truth file does not
 //! say, so that a careful reader arrives at exactly the true owners.
 
+mod mistakes;
 mod phrases;
 #[cfg(test)]
 mod reading_tests;
@@ -16,8 +17,13 @@ use coin_schemas::household::{ObjectId, UserName, Users};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use self::mistakes::taken_for;
+pub use self::mistakes::{ErrorRate, InvalidErrorRate};
 use self::phrases::{Facts, answers};
 use super::{Person, PersonError, PersonKind, PutQuestion, Response};
+
+/// The draws that decide on errors, apart from those of the words.
+const ERRORS: u32 = 1 << 31;
 
 /// A household of people who know what belongs to whom.
 ///
@@ -28,12 +34,18 @@ pub struct SimulatedPerson {
     truth: Truth,
     users: Users,
     seed: u64,
+    wrong_answers: ErrorRate,
 }
 
 impl SimulatedPerson {
     /// People of this household who answer from this truth, in words that follow from the seed.
     pub fn new(truth: Truth, users: Users, seed: u64) -> Self {
-        Self { truth, users, seed }
+        Self { truth, users, seed, wrong_answers: ErrorRate::NONE }
+    }
+
+    /// The same people, who err in so many answers; asked again, they think anew.
+    pub fn erring(self, wrong_answers: ErrorRate) -> Self {
+        Self { wrong_answers, ..self }
     }
 
     fn answer(&self, object: &ObjectId, times_asked: u32) -> (String, Option<UserName>) {
@@ -43,10 +55,20 @@ impl SimulatedPerson {
             let first = random.random_range(0..members.len());
             members[(first + times_asked as usize) % members.len()]
         });
+        let owners = self.truth.owners.get(object);
+        let mut error = self.generator(object, ERRORS | times_asked);
+        let taken = owners.and_then(|owners| taken_for(owners, &self.users, self.wrong_answers, &mut error));
         let facts = Facts {
             users: &self.users,
-            owners: self.truth.owners.get(object),
-            usage_type: self.truth.usage_type.as_ref().and_then(|types| types.get(object)).copied(),
+            owners: taken.as_ref().or(owners),
+            // What is said beside it would not fit other owners.
+            usage_type: self
+                .truth
+                .usage_type
+                .as_ref()
+                .filter(|_| taken.is_none())
+                .and_then(|types| types.get(object))
+                .copied(),
             speaker,
         };
         let mut wordings = answers(&facts);

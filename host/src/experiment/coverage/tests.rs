@@ -112,7 +112,8 @@ async fn what_is_wrong_in_the_end_is_counted_against_the_truth() {
         history: history.map(Clone::clone).to_vec(),
         cost: Default::default(),
     };
-    assert_eq!(wrong(&after([&nobody, &truth]), &home), (0, 3));
-    assert_eq!(wrong(&after([&truth, &nobody]), &home), (3, 3));
-    assert_eq!(wrong(&after([&truth, &but_one]), &home), (1, 3));
+    let ended = |wrong| End { wrong, things: 3, questions: 1 };
+    assert_eq!(end(&after([&nobody, &truth]), &home), ended(0));
+    assert_eq!(end(&after([&truth, &nobody]), &home), ended(3));
+    assert_eq!(end(&after([&truth, &but_one]), &home), ended(1));
 }

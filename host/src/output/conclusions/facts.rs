@@ -41,6 +41,7 @@ fn correct(report: &Report) -> Option<String> {
 fn settings(report: &Report) -> String {
     let gate = match report.gate {
         Gate::Risk => "risk",
+        Gate::Adaptive => "adaptive",
         Gate::Set => "set",
         Gate::Paper => "paper",
         Gate::Always => "always",

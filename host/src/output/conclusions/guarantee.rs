@@ -14,6 +14,7 @@ pub(crate) fn guarantee(report: &Report) -> String {
     }
     let promise = match report.gate {
         Gate::Risk => risk(calibration),
+        Gate::Adaptive => adaptive(calibration, report),
         Gate::Set => format!(
             "with a probability of {} the true owner set of a thing is among its plausible ones, and \
              everything with more than one was up for a question",
@@ -74,6 +75,26 @@ fn risk(calibration: &Calibration) -> String {
          to be settled at once and wrong",
         percent(calibration.lambda)
     )
+}
+
+fn adaptive(calibration: &Calibration, report: &Report) -> String {
+    let Some(adapted) = &report.adapted else { return risk(calibration) };
+    let target = report.parameters.risk.map(share).unwrap_or_default();
+    let errors = count(adapted.errors as u64, "answer differed", "answers differed");
+    let seen = format!(
+        "{errors} from what was thought most probable, where {:.1} were expected to",
+        adapted.expected_errors
+    );
+    match adapted.lambda {
+        Some(lambda) => format!(
+            "things at least {} sure are settled without a question; {seen}, and by that at most {target} of all \
+             things are expected to be wrong in the end, however unlike other homes this one is",
+            percent(lambda)
+        ),
+        None => {
+            format!("{seen}, and by that only asking about everything keeps wrong owner sets at {target}")
+        }
+    }
 }
 
 fn prediction_sets(calibration: &Calibration) -> String {

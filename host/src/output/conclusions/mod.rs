@@ -104,6 +104,10 @@ fn is_unsettled(report: &Report, object: &ObjectReport) -> bool {
         (Gate::Always, _) => true,
         (_, None) => object.confidence < coin::calibration::UNCALIBRATED_CONFIDENCE,
         (Gate::Risk, Some(calibration)) => object.confidence < calibration.lambda,
+        (Gate::Adaptive, Some(_)) => {
+            let adapted = report.adapted.as_ref().and_then(|adapted| adapted.lambda);
+            adapted.is_none_or(|lambda| object.confidence < lambda)
+        }
         (Gate::Paper, Some(calibration)) => object.uncertainty > calibration.q_cp,
         (Gate::Set, Some(_)) => false,
     };

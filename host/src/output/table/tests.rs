@@ -138,8 +138,11 @@ fn report() -> Report {
             epsilon_out: 0.2,
             max_questions: 20,
             answers: "simulated".to_owned(),
+            risk: None,
+            wrong_answers: None,
         },
         calibration: Some(calibration()),
+        adapted: None,
         objects,
         questions: vec![
             question(1, "2", "Mary's — the others only borrow it.", AnswerStatus::Answered),

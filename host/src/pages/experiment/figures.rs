@@ -379,7 +379,7 @@ fn coverage(results: &ExperimentResults) -> Option<Figure> {
         .iter()
         .map(|row| {
             // Everything is drawn as what should be, so that right of the promise is good in every row.
-            let is_loss = matches!(row.guarantee, Guarantee::SettledWrong | Guarantee::WrongInTheEnd);
+            let is_loss = row.guarantee.is_loss();
             let turned = |share: f64| if is_loss { 1.0 - share } else { share };
             let (low, high) = if is_loss { (turned(row.high), turned(row.low)) } else { (row.low, row.high) };
             let name = match row.guarantee {
@@ -388,6 +388,8 @@ fn coverage(results: &ExperimentResults) -> Option<Figure> {
                 Guarantee::OwnerSet => "the prediction set holds the true owner set",
                 Guarantee::SettledWrong => "not settled wrongly at once",
                 Guarantee::WrongInTheEnd => "right after the questions",
+                Guarantee::WrongDespiteErrors => "right though answers are wrong",
+                Guarantee::WrongAdapted => "right after the adaptive gate",
             };
             Interval {
                 name: format!("{name} ({}, {} homes)", row.protocol, row.households),
