@@ -39,8 +39,8 @@ fn what_is_believed_of_older_things_stays() {
         assert_eq!(after["owners"], before["owners"]);
         assert_eq!(after["settled"], before["settled"]);
         let (now, then) = (after["confidence"].as_f64().unwrap(), before["confidence"].as_f64().unwrap());
-        // What is open is judged among more people, and so tells a little less of what people do here.
-        assert!((now - then).abs() < 1e-3, "{object}: {now} and {then}");
+        // What is open is judged among more people, and more people can form more groups.
+        assert!((now - then).abs() < 1e-2, "{object}: {now} and {then}");
         assert_eq!(after["scores"]["Ann"], 0.0);
     }
 }
