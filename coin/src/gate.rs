@@ -93,18 +93,32 @@ pub fn first_to_ask<'a>(
     gate: Gate,
     candidates: impl IntoIterator<Item = Candidate<'a>>,
 ) -> Option<&'a ObjectId> {
-    candidates
-        .into_iter()
-        .filter(|candidate| candidate.times_asked < MOST_TIMES_ASKED)
-        .min_by(|left, right| {
-            left.times_asked.cmp(&right.times_asked).then_with(|| match (left.assessment, right.assessment) {
-                (Some(a), Some(b)) => compare_priority(gate, (left.object, a), (right.object, b)),
-                (None, Some(_)) => Ordering::Less,
-                (Some(_), None) => Ordering::Greater,
-                (None, None) => compare_ids(left.object, right.object),
-            })
+    let may_be_asked = candidates.into_iter().filter(|candidate| candidate.times_asked < MOST_TIMES_ASKED);
+    may_be_asked.min_by(|left, right| left.compare(gate, right)).map(|candidate| candidate.object)
+}
+
+/// The same for as many as that, first the one that is asked about first.
+pub fn first_few_to_ask<'a>(
+    gate: Gate,
+    candidates: impl IntoIterator<Item = Candidate<'a>>,
+    most: usize,
+) -> Vec<Candidate<'a>> {
+    let may_be_asked = candidates.into_iter().filter(|candidate| candidate.times_asked < MOST_TIMES_ASKED);
+    let mut in_order: Vec<Candidate<'a>> = may_be_asked.collect();
+    in_order.sort_by(|left, right| left.compare(gate, right));
+    in_order.truncate(most);
+    in_order
+}
+
+impl Candidate<'_> {
+    fn compare(&self, gate: Gate, other: &Self) -> Ordering {
+        self.times_asked.cmp(&other.times_asked).then_with(|| match (self.assessment, other.assessment) {
+            (Some(a), Some(b)) => compare_priority(gate, (self.object, a), (other.object, b)),
+            (None, Some(_)) => Ordering::Less,
+            (Some(_), None) => Ordering::Greater,
+            (None, None) => compare_ids(self.object, other.object),
         })
-        .map(|candidate| candidate.object)
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use coin::agent::{AgentSettings, Reinference};
+use coin::agent::{AgentSettings, QuestionChoice, Reinference};
 use coin::calibration::{
     CalibrationError, CalibrationSample, EMBEDDED_MODEL, EMBEDDED_SCORING, Levels, Provenance, Thresholds,
     calibrate,
@@ -348,6 +348,7 @@ async fn score_loaded(
         share: ShareThresholds::default(),
         max_questions: 0,
         reinference: Reinference::AnsweredContext,
+        choice: QuestionChoice::default(),
         answers_per_pass: 1,
     };
     let course = Course::new(agent_settings, how.withheld.clone(), how.scoring, how.concurrency)

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use coin::agent::{Agent, AgentSettings, Reinference};
+use coin::agent::{Agent, AgentSettings, QuestionChoice, Reinference};
 use coin::calibration::{EMBEDDED_MODEL, EMBEDDED_SCORING, Thresholds, embedded_calibration, score_of};
 use coin::conformal::Level;
 use coin::dialogue::Reading;
@@ -216,6 +216,7 @@ pub async fn run_episode(
         share: ShareThresholds::default(),
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
         reinference: settings.reinference,
+        choice: QuestionChoice::default(),
         answers_per_pass: 1,
     };
     let parameters = Parameters {
@@ -398,6 +399,13 @@ pub(crate) async fn drive(
         settings.reinference = Reinference::EveryUnasked;
         settings.answers_per_pass = home.things.len().div_ceil(THINGS_PER_ANSWER).max(1);
     }
+    // What an answer would change can be told before it is given, where no model is asked, and in a home that is judged soon.
+    if scoring.estimator == Estimator::Evidence
+        && settings.answers_per_pass == 1
+        && goes_by_doubt(settings.gate)
+    {
+        settings.choice = QuestionChoice::MostInformative;
+    }
     let mut agent = Agent::new(settings, home.things.keys().cloned());
     for (object, owners) in answered {
         agent.remember_answer(&object, Reading { owners, outside_household: owners.is_empty() });
@@ -423,6 +431,11 @@ pub(crate) async fn drive(
     };
     let outcome = driver.run(agent).await?;
     Ok((outcome, steps.cost()))
+}
+
+/// Whether a gate settles things by how sure it is of their best owner set.
+fn goes_by_doubt(gate: Gate) -> bool {
+    matches!(gate, Gate::Risk | Gate::Adaptive)
 }
 
 /// The calibration that was handed in, which must be the model's own and of a model that was told as much, or the one

@@ -16,6 +16,11 @@ pub enum Effect {
         /// The things, by id.
         objects: Vec<ObjectId>,
     },
+    /// Work out what questions about these things are worth; answer with `Weighed`.
+    Weigh {
+        /// The things, the least sure one first.
+        objects: Vec<ObjectId>,
+    },
     /// Ask a person about this thing (QUESTION-GENERATION); answer with `Answered`, `Declined` or `NobodyLeft`.
     Ask {
         /// The thing.

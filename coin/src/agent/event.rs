@@ -26,6 +26,11 @@ pub enum Event {
         /// Why, for the reader of the report.
         reason: String,
     },
+    /// It was worked out what questions are worth.
+    Weighed {
+        /// The doubt that is expected to be left in the home after each, in the order of the things.
+        doubt_left: Vec<f64>,
+    },
     /// A person answered the question and the answer was read (UNDERSTAND-ANSWER).
     Answered {
         /// How it was read.

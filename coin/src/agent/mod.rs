@@ -22,13 +22,29 @@ pub use state::{DOUBTFUL, Known, KnownSource, NOTABLE, ObjectState};
 use crate::calibration::Thresholds;
 use crate::conformal::Level;
 use crate::dialogue::Reading;
-use crate::gate::{AdaptedThreshold, Candidate, Held, TrackRecord, first_to_ask, sort_ids, wants_to_ask};
+use crate::gate::{
+    AdaptedThreshold, Candidate, Held, TrackRecord, first_few_to_ask, first_to_ask, sort_ids, wants_to_ask,
+};
 use crate::owners::OwnerSet;
 use crate::sharing::ShareThresholds;
 
 /// BUILD-KNOWN: an inferred owner set counts as known from this probability on. Less would feed guesses back as
 /// facts, which is how the paper's own failure, the cup given to Mary, came about.
 pub const KNOWN_CONFIDENCE: f64 = 0.9;
+
+/// Of several things that are worth a question, which one is asked about.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum QuestionChoice {
+    /// The one that the gate puts first, as the paper has it.
+    #[default]
+    LeastSure,
+    /// The one whose answer leaves least doubt about everything, of the few that the gate puts first.
+    MostInformative,
+}
+
+/// What so many questions are worth is worked out before one is put. Others are less in doubt themselves, and what an answer
+/// tells of other things is little beside what it tells of its own.
+const MOST_WEIGHED: usize = 8;
 
 /// The settings of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +61,8 @@ pub struct AgentSettings {
     pub max_questions: usize,
     /// Which things are inferred again after an answer.
     pub reinference: Reinference,
+    /// Which of the things that the gate finds worth a question is asked about.
+    pub choice: QuestionChoice,
     /// So many answers are awaited before things are inferred again; 1 in the paper. One answer more changes little where
     /// there are thousands of things. No run ends with an answer that was not taken into account, but at Q_max.
     pub answers_per_pass: usize,
@@ -62,6 +80,9 @@ pub enum UnexpectedEvent {
         /// The thing.
         object: ObjectId,
     },
+    /// What questions are worth was told although nobody wanted to know, or not for every one of them.
+    #[error("what so many questions are worth was not to be worked out")]
+    NotWeighing,
     /// An answer came although nobody was asked.
     #[error("no question is open")]
     NotAsking,
@@ -71,6 +92,7 @@ pub enum UnexpectedEvent {
 enum Phase {
     Idle,
     Inferring { pending: BTreeSet<ObjectId>, finished: BTreeMap<ObjectId, Result<Inference, String>> },
+    Weighing { objects: Vec<ObjectId> },
     Asking { object: ObjectId },
     Finished,
 }
@@ -140,6 +162,15 @@ impl Agent {
             },
             Event::Inferred { object, inference } => self.take_result(object, Ok(inference)),
             Event::InferenceFailed { object, reason } => self.take_result(object, Err(reason)),
+            Event::Weighed { doubt_left } => match &self.phase {
+                Phase::Weighing { objects } if objects.len() == doubt_left.len() => {
+                    let least =
+                        doubt_left.iter().zip(objects).min_by(|left, right| left.0.total_cmp(right.0));
+                    let object = least.map(|(_, object)| object.clone());
+                    Ok(object.map_or(Vec::new(), |object| self.ask(object)))
+                }
+                _ => Err(UnexpectedEvent::NotWeighing),
+            },
             Event::Answered { reading } => {
                 let object = self.open_question()?;
                 Ok(self.apply_answer(&object, reading))
@@ -166,7 +197,7 @@ impl Agent {
         match std::mem::replace(&mut self.phase, Phase::Finished) {
             Phase::Inferring { finished, .. } => effects.extend(self.take_in(finished)),
             Phase::Finished => return effects,
-            Phase::Idle | Phase::Asking { .. } => {}
+            Phase::Idle | Phase::Weighing { .. } | Phase::Asking { .. } => {}
         }
         effects.extend(self.finish(stopped));
         effects
@@ -324,14 +355,41 @@ impl Agent {
         let candidates = unsettled.iter().filter(|(_, state)| state.may_be_asked()).map(|(object, state)| {
             Candidate { object, times_asked: state.times_asked(), assessment: state.assessment() }
         });
-        let next = first_to_ask(gate, candidates).cloned();
-        match next {
-            Some(object) => {
-                self.phase = Phase::Asking { object: object.clone() };
-                vec![Effect::Ask { object }]
+        match self.settings.choice {
+            QuestionChoice::LeastSure => match first_to_ask(gate, candidates).cloned() {
+                Some(object) => self.ask(object),
+                None => self.finish_up_to_date(Stopped::NothingLeftToAsk),
+            },
+            QuestionChoice::MostInformative => {
+                let few = first_few_to_ask(gate, candidates, MOST_WEIGHED);
+                let Some(first) = few.first() else {
+                    return self.finish_up_to_date(Stopped::NothingLeftToAsk);
+                };
+                let comparable = few.iter().filter(|other| {
+                    other.times_asked == first.times_asked
+                        && other.assessment.is_some() == first.assessment.is_some()
+                });
+                let objects: Vec<ObjectId> = comparable.map(|candidate| candidate.object.clone()).collect();
+                match objects.as_slice() {
+                    [only] => self.ask(only.clone()),
+                    _ => {
+                        self.phase = Phase::Weighing { objects: objects.clone() };
+                        vec![Effect::Weigh { objects }]
+                    }
+                }
             }
-            None => self.finish_up_to_date(Stopped::NothingLeftToAsk),
         }
+    }
+
+    fn ask(&mut self, object: ObjectId) -> Vec<Effect> {
+        self.phase = Phase::Asking { object: object.clone() };
+        vec![Effect::Ask { object }]
+    }
+
+    /// From which probability of its best owner set on a thing is settled without an answer by the gates that go by it.
+    pub fn settled_from(&self) -> f64 {
+        let adapted = self.adapted_threshold().map_or(0.0, |adapted| adapted.lambda());
+        self.settings.thresholds.lambda().max(adapted)
     }
 
     /// Ends the run, unless an answer has not been taken into account.

@@ -1,6 +1,6 @@
 //! A run of the agent as a list of events, each with the effects that it has to have.
 
-use coin::agent::{Agent, AgentSettings, Effect, Event, Inference, ObjectState, Reinference};
+use coin::agent::{Agent, AgentSettings, Effect, Event, Inference, ObjectState, QuestionChoice, Reinference};
 use coin::calibration::Thresholds;
 use coin::conformal::Level;
 use coin::dialogue::Reading;
@@ -27,6 +27,7 @@ pub(crate) fn the_papers() -> AgentSettings {
         share: ShareThresholds::default(),
         max_questions: usize::MAX,
         reinference: Reinference::EveryUnasked,
+        choice: QuestionChoice::default(),
         answers_per_pass: 1,
     }
 }

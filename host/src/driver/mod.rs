@@ -197,6 +197,11 @@ impl Run<'_> {
                     // What no model was paid for is worked out again wherever it is needed, and stored in the end.
                     Effect::Record { objects } if self.driver.is_free() => self.unstored.extend(objects),
                     Effect::Record { objects } => self.driver.record(&self.agent, &objects).await?,
+                    Effect::Weigh { objects } => {
+                        let (answers, from) = (self.agent.answers(), self.agent.settled_from());
+                        let doubt_left = self.driver.estimation.doubt_left(&objects, &answers, from).await?;
+                        events.push(Event::Weighed { doubt_left });
+                    }
                     Effect::Ask { object } => {
                         let standings = self.driver.standings(&self.agent);
                         self.history.push(standings);

@@ -83,6 +83,22 @@ impl<'a> SeenHome<'a> {
         Ok(JudgedHome { seen, judgement: self.judged(seen, answers) })
     }
 
+    /// The doubt that is expected to be left after an answer about each of these things.
+    pub(super) async fn doubt_left(
+        &self,
+        things: &[ObjectId],
+        answers: &Answers,
+        settled_from: f64,
+    ) -> Result<Vec<f64>, StepError> {
+        let seen = self.seen().await?;
+        let judgement = self.judged(seen, answers);
+        let home = JudgedHome { seen, judgement: Arc::clone(&judgement) };
+        let places = things.iter().map(|thing| home.place(thing)).collect::<Result<Vec<_>, _>>()?;
+        let told = self.told(seen, answers);
+        let left = |place| seen.evidence.doubt_left(&told, &judgement, place, settled_from);
+        Ok(places.into_iter().map(left).collect())
+    }
+
     async fn seen(&self) -> Result<&Seen, StepError> {
         self.seen.get_or_try_init(|| self.look()).await
     }
@@ -112,6 +128,15 @@ impl<'a> SeenHome<'a> {
         })
     }
 
+    /// What is told of every thing, with the file of classes for common sense.
+    fn told<'b>(&self, seen: &'b Seen, answers: &Answers) -> Vec<Told<'b>> {
+        let told = self.things.keys().zip(&seen.expectations).map(|(thing, expectation)| Told {
+            answer: answers.get(thing).copied(),
+            opinion: expectation.as_ref().into(),
+        });
+        told.collect()
+    }
+
     /// The home with these answers, which is judged once as long as there is no other one.
     fn judged(&self, seen: &Seen, answers: &Answers) -> Arc<HomeJudgement> {
         let mut judged = self.judged.lock().unwrap_or_else(PoisonError::into_inner);
@@ -120,15 +145,7 @@ impl<'a> SeenHome<'a> {
         {
             return Arc::clone(judged);
         }
-        let told: Vec<Told<'_>> = self
-            .things
-            .keys()
-            .zip(&seen.expectations)
-            .map(|(thing, expectation)| Told {
-                answer: answers.get(thing).copied(),
-                opinion: expectation.as_ref().into(),
-            })
-            .collect();
+        let told = self.told(seen, answers);
         let now = Arc::new(match &*judged {
             Some((_, judged)) => seen.evidence.judge_again(&told, judged),
             None => seen.evidence.judge(&told),

@@ -117,6 +117,20 @@ impl<'a> Estimation<'a> {
         }
     }
 
+    /// The doubt that is expected to be left in the home after an answer about each of these things, which the evidence model
+    /// tells. Nothing below this probability of its best owner set is settled.
+    ///
+    /// # Errors
+    /// If a thing is not in the home, or the server fails.
+    pub async fn doubt_left(
+        &self,
+        things: &[ObjectId],
+        answers: &Answers,
+        settled_from: f64,
+    ) -> Result<Vec<f64>, StepError> {
+        self.home.doubt_left(things, answers, settled_from).await
+    }
+
     /// The evidence model by itself, with the file of classes for common sense.
     async fn by_evidence(&self, thing: &TaskObject, answers: &Answers) -> Result<Inference, StepError> {
         Ok(self.inference(self.home.with(answers).await?.by_evidence(&thing.id)?))

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use coin::agent::{AgentSettings, Reinference};
+use coin::agent::{AgentSettings, QuestionChoice, Reinference};
 use coin::calibration::{Provenance, Thresholds, calibrate};
 use coin::evidence::{EvidenceParameters, HabitSource};
 use coin::sharing::ShareThresholds;
@@ -181,6 +181,7 @@ impl Trial<'_> {
                 share: ShareThresholds::default(),
                 max_questions: home.loaded.episode.objects.len(),
                 reinference: Reinference::AnsweredContext,
+                choice: QuestionChoice::default(),
                 answers_per_pass: 1,
             };
             let course =

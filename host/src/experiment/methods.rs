@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
 
-use coin::agent::{AgentSettings, Reinference};
+use coin::agent::{AgentSettings, QuestionChoice, Reinference};
 use coin::baselines::{frequency, last_user};
 use coin::calibration::{Thresholds, score_of};
 use coin::owners::OwnerSet;
@@ -160,6 +160,7 @@ async fn agent(
         share: ShareThresholds::default(),
         max_questions: judged.loaded.episode.objects.len(),
         reinference: variant.reinference,
+        choice: QuestionChoice::default(),
         answers_per_pass: 1,
     };
     let course = Course::new(settings, kind.withheld, kind.scoring, concurrency);

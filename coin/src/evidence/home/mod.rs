@@ -11,6 +11,7 @@ mod likelihood;
 mod nearness;
 mod resemblance;
 mod ties;
+mod value;
 mod weighed;
 
 use std::collections::BTreeMap;
