@@ -1,6 +1,7 @@
 //! The gates: which thing is asked about next, if any.
 
 mod adaptive;
+mod together;
 
 use std::cmp::Ordering;
 
@@ -8,6 +9,7 @@ use coin_schemas::household::ObjectId;
 use coin_schemas::report::Gate;
 
 pub use adaptive::{AdaptedThreshold, Held, TrackRecord};
+pub use together::{Alike, AlikeStanding, asked_together};
 
 use crate::calibration::{Assessment, Thresholds, UNCALIBRATED_CONFIDENCE};
 

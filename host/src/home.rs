@@ -10,7 +10,9 @@ use coin::roster::{Roster, RosterError};
 use coin_schemas::episode::Episode;
 use coin_schemas::household::{ObjectId, Source, UserName};
 use coin_schemas::model::TaskObject;
-use coin_schemas::tools::{ListObjects, ListObjectsResult, ListUsers, ListUsersResult, MAX_LIMIT};
+use coin_schemas::tools::{
+    ListObjects, ListObjectsResult, ListUsers, ListUsersResult, MAX_LIMIT, display_name,
+};
 use coin_server::episode::{EpisodeError, LoadedEpisode};
 use coin_server::service::{CoinService, ServiceOptions, service};
 use coin_server::store::{Access, Store, StoreError};
@@ -63,6 +65,17 @@ pub struct Home {
 }
 
 impl Home {
+    /// The things that a person would name in one word: all of a class in a room, where there are several.
+    pub fn alike(&self) -> Vec<Vec<ObjectId>> {
+        let mut groups: BTreeMap<(String, &str), Vec<ObjectId>> = BTreeMap::new();
+        for thing in self.things.values() {
+            if let Some(room) = &thing.room {
+                groups.entry((display_name(&thing.class), room)).or_default().push(thing.id.clone());
+            }
+        }
+        groups.into_values().filter(|group| group.len() > 1).collect()
+    }
+
     /// Connects an episode to its server. In this process the episode is imported first, into `db` or into
     /// memory; another server must know the episode's home already.
     pub async fn open(

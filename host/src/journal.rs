@@ -115,7 +115,7 @@ pub struct Journal {
     file: Option<(PathBuf, File)>,
     past: VecDeque<Pass>,
     /// The thing whose answer was taken back right before the run ended.
-    withdrawn: Option<ObjectId>,
+    withdrawn: Vec<ObjectId>,
 }
 
 /// How a run begins.
@@ -175,7 +175,7 @@ impl Journal {
             TryLockError::Error(source) => failed(source),
         })?;
         let mut text = String::new();
-        let (mut past, mut withdrawn) = (VecDeque::new(), None);
+        let (mut past, mut withdrawn) = (VecDeque::new(), Vec::new());
         if beginning == Beginning::WhereItEnded {
             let mut bytes = Vec::new();
             file.read_to_end(&mut bytes).map_err(failed)?;
@@ -202,8 +202,8 @@ impl Journal {
     }
 
     /// The thing whose answer was taken back right before the run ended, so that the database may not know of it.
-    pub fn withdrawn(&self) -> Option<&ObjectId> {
-        self.withdrawn.as_ref()
+    pub fn withdrawn(&self) -> &[ObjectId] {
+        &self.withdrawn
     }
 
     /// What an earlier part of the run concluded of a thing in the pass that is under way.
@@ -314,12 +314,12 @@ fn read_entries(path: &Path, text: &str) -> Result<Vec<JournalEntry>, JournalErr
 fn read_past(
     entries: &[JournalEntry],
     roster: &Roster,
-) -> Result<(VecDeque<Pass>, Option<ObjectId>), JournalError> {
-    let mut withdrawn = None;
+) -> Result<(VecDeque<Pass>, Vec<ObjectId>), JournalError> {
+    let mut withdrawn = Vec::new();
     let mut passes = VecDeque::from([Pass::default()]);
     for entry in entries {
         let Some(pass) = passes.back_mut() else { break };
-        withdrawn = None;
+        withdrawn = Vec::new();
         match entry {
             JournalEntry::Run(_) => {}
             JournalEntry::Inferred { object_id, scores, owner_sets, related, parts, problem } => {
@@ -354,8 +354,8 @@ fn read_past(
                 passes.pop_back();
                 let question = passes.back_mut().and_then(|pass| pass.question.take());
                 withdrawn = match question {
-                    Some(PastQuestion::Answered { question, .. }) => Some(question.object_id),
-                    Some(PastQuestion::Declined { .. }) | None => None,
+                    Some(PastQuestion::Answered { question, .. }) => question.objects().cloned().collect(),
+                    Some(PastQuestion::Declined { .. }) | None => Vec::new(),
                 };
             }
         }

@@ -364,7 +364,9 @@ impl Course {
         let mut answered = home.answered.clone();
         if let Some(before) = &self.answered_before {
             for question in self.journal.past_questions() {
-                answered.remove(&question.object_id);
+                question.objects().for_each(|object| {
+                    answered.remove(object);
+                });
             }
             for (object, owners) in before {
                 answered.insert(object.clone(), home.roster.owner_set(owners)?);
@@ -384,9 +386,10 @@ pub(crate) async fn drive(
 ) -> Result<(Outcome, coin_schemas::report::Cost), DriveError> {
     let malformed = |error: RosterError| DriveError::Malformed(error.to_string());
     let mut answered = course.answered(home).map_err(malformed)?;
-    if let (Some(object), Some(before)) = (course.journal.withdrawn(), &course.answered_before) {
+    let before = course.answered_before.as_ref();
+    for object in course.journal.withdrawn() {
         // The run ended between taking the answer back and telling the server.
-        if home.answered.contains_key(object) && !before.contains_key(object) {
+        if home.answered.contains_key(object) && before.is_some_and(|before| !before.contains_key(object)) {
             let arguments = RetractAnswer { object_id: object.to_string() };
             let _: RetractAnswerResult = home.server.call("retract_answer", &arguments).await?;
             answered.remove(object);
@@ -406,7 +409,8 @@ pub(crate) async fn drive(
     {
         settings.choice = QuestionChoice::MostInformative;
     }
-    let mut agent = Agent::new(settings, home.things.keys().cloned());
+    let alike = if asks_together(settings.gate, person.kind()) { home.alike() } else { Vec::new() };
+    let mut agent = Agent::new(settings, home.things.keys().cloned()).asking_together(alike);
     for (object, owners) in answered {
         agent.remember_answer(&object, Reading { owners, outside_household: owners.is_empty() });
     }
@@ -436,6 +440,11 @@ pub(crate) async fn drive(
 /// Whether a gate settles things by how sure it is of their best owner set.
 fn goes_by_doubt(gate: Gate) -> bool {
     matches!(gate, Gate::Risk | Gate::Adaptive)
+}
+
+/// Whether several things may be asked about at once. Prepared answers are about one thing each.
+fn asks_together(gate: Gate, person: PersonKind) -> bool {
+    matches!(gate, Gate::Risk | Gate::Adaptive | Gate::Set) && person != PersonKind::Scripted
 }
 
 /// The calibration that was handed in, which must be the model's own and of a model that was told as much, or the one

@@ -67,6 +67,9 @@ pub enum LogEvent {
         step: usize,
         /// The thing.
         object_id: ObjectId,
+        /// Other things that the question is about as well.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        also: Vec<ObjectId>,
         /// The question.
         question: String,
     },

@@ -265,6 +265,9 @@ pub struct QuestionReport {
     pub step: usize,
     /// The thing that it is about.
     pub object_id: ObjectId,
+    /// Other things that it is about as well.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub also: Vec<ObjectId>,
     /// The question as it was put.
     pub question: String,
     /// The answer as it was given.
@@ -281,6 +284,18 @@ pub struct QuestionReport {
     pub uncertainty_before: f64,
     /// Γ before the question.
     pub prediction_set_before: Owners,
+}
+
+impl QuestionReport {
+    /// All things that the question is about.
+    pub fn objects(&self) -> impl Iterator<Item = &ObjectId> {
+        std::iter::once(&self.object_id).chain(&self.also)
+    }
+
+    /// Whether the question is about a thing, alone or among others.
+    pub fn is_about(&self, object: &ObjectId) -> bool {
+        self.objects().any(|other| other == object)
+    }
 }
 
 /// Accuracy after a number of questions.

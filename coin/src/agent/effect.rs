@@ -26,6 +26,12 @@ pub enum Effect {
         /// The thing.
         object: ObjectId,
     },
+    /// Ask a person about all these things in one question; answer with the same. An answer that is the same for all is
+    /// `Answered`; one that leaves them open is `Answered` without a resolved reading.
+    AskTogether {
+        /// The things, the least sure one first, all held to belong to the same people.
+        objects: Vec<ObjectId>,
+    },
     /// The run is over.
     Finish {
         /// Why.

@@ -4,6 +4,7 @@
 //! effects and reports back. The results of one pass may arrive in any order: they are taken in together when
 //! the pass is complete.
 
+mod asking;
 mod effect;
 mod event;
 mod state;
@@ -22,9 +23,7 @@ pub use state::{DOUBTFUL, Known, KnownSource, NOTABLE, ObjectState};
 use crate::calibration::Thresholds;
 use crate::conformal::Level;
 use crate::dialogue::Reading;
-use crate::gate::{
-    AdaptedThreshold, Candidate, Held, TrackRecord, first_few_to_ask, first_to_ask, sort_ids, wants_to_ask,
-};
+use crate::gate::sort_ids;
 use crate::owners::OwnerSet;
 use crate::sharing::ShareThresholds;
 
@@ -41,10 +40,6 @@ pub enum QuestionChoice {
     /// The one whose answer leaves least doubt about everything, of the few that the gate puts first.
     MostInformative,
 }
-
-/// What so many questions are worth is worked out before one is put. Others are less in doubt themselves, and what an answer
-/// tells of other things is little beside what it tells of its own.
-const MOST_WEIGHED: usize = 8;
 
 /// The settings of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,9 +86,17 @@ pub enum UnexpectedEvent {
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
     Idle,
-    Inferring { pending: BTreeSet<ObjectId>, finished: BTreeMap<ObjectId, Result<Inference, String>> },
-    Weighing { objects: Vec<ObjectId> },
-    Asking { object: ObjectId },
+    Inferring {
+        pending: BTreeSet<ObjectId>,
+        finished: BTreeMap<ObjectId, Result<Inference, String>>,
+    },
+    Weighing {
+        objects: Vec<ObjectId>,
+    },
+    /// Of one thing, or of several at once.
+    Asking {
+        objects: Vec<ObjectId>,
+    },
     Finished,
 }
 
@@ -102,6 +105,8 @@ enum Phase {
 pub struct Agent {
     settings: AgentSettings,
     objects: BTreeMap<ObjectId, ObjectState>,
+    /// Things that a person would name in one word.
+    alike: Vec<Vec<ObjectId>>,
     /// BUILD-KNOWN as the last pass saw it.
     known: BTreeMap<ObjectId, Known>,
     questions: usize,
@@ -117,11 +122,18 @@ impl Agent {
         Self {
             settings,
             objects,
+            alike: Vec::new(),
             known: BTreeMap::new(),
             questions: 0,
             questions_since_pass: 0,
             phase: Phase::Idle,
         }
+    }
+
+    /// Lets several things be asked about at once, where a person would name them in one word, such as all mugs in the
+    /// kitchen. The paper asks about one thing at a time.
+    pub fn asking_together(self, alike: Vec<Vec<ObjectId>>) -> Self {
+        Self { alike, ..self }
     }
 
     /// Takes over what a person answered before the run; a thing that is settled so is not asked about. Call it before
@@ -172,14 +184,16 @@ impl Agent {
                 _ => Err(UnexpectedEvent::NotWeighing),
             },
             Event::Answered { reading } => {
-                let object = self.open_question()?;
-                Ok(self.apply_answer(&object, reading))
+                let objects = self.open_question()?;
+                Ok(self.apply_answer(&objects, reading))
             }
             Event::Declined => {
-                let object = self.open_question()?;
+                let objects = self.open_question()?;
                 self.questions += 1;
-                if let Some(state) = self.objects.get_mut(&object) {
-                    state.close_to_questions();
+                for object in &objects {
+                    if let Some(state) = self.objects.get_mut(object) {
+                        state.close_to_questions();
+                    }
                 }
                 Ok(self.after_question())
             }
@@ -203,9 +217,9 @@ impl Agent {
         effects
     }
 
-    fn open_question(&self) -> Result<ObjectId, UnexpectedEvent> {
+    fn open_question(&self) -> Result<Vec<ObjectId>, UnexpectedEvent> {
         match &self.phase {
-            Phase::Asking { object } => Ok(object.clone()),
+            Phase::Asking { objects } => Ok(objects.clone()),
             _ => Err(UnexpectedEvent::NotAsking),
         }
     }
@@ -296,102 +310,6 @@ impl Agent {
         }
     }
 
-    /// The things that the gate would have asked about: those that nobody has answered about and that it does not settle, and
-    /// those of which an answer is to be confirmed.
-    pub fn unsettled(&self) -> impl Iterator<Item = (&ObjectId, &ObjectState)> {
-        let AgentSettings { gate, thresholds, .. } = &self.settings;
-        let adapted = self.adapted_threshold();
-        self.objects.iter().filter(move |(_, state)| match (state.trust(), state.assessment()) {
-            // What was said twice stands.
-            (Some(_), _) if !state.may_be_asked() => false,
-            (Some(trust), _) => match gate {
-                // The paper takes every answer as it is.
-                Gate::Paper | Gate::Never => false,
-                Gate::Risk | Gate::Adaptive | Gate::Set | Gate::Always => {
-                    trust < DOUBTFUL || adapted.is_some_and(|adapted| !adapted.settles_answer(trust))
-                }
-            },
-            (None, None) => *gate != Gate::Never,
-            (None, Some(assessment)) => {
-                wants_to_ask(*gate, thresholds, assessment)
-                    || adapted.is_some_and(|adapted| !adapted.settles(assessment.confidence))
-            }
-        })
-    }
-
-    /// How what was thought of things fared against the answers about them.
-    pub fn track_record(&self) -> TrackRecord {
-        let mut record = TrackRecord::default();
-        for (confidence, agrees) in self.objects.values().filter_map(ObjectState::claim) {
-            record.add(confidence, agrees);
-        }
-        record
-    }
-
-    /// The threshold of the adaptive gate, as the answers so far have it; `None` with another gate. What nobody can be asked
-    /// about any more is not counted.
-    pub fn adapted_threshold(&self) -> Option<AdaptedThreshold> {
-        let AgentSettings { gate, risk, .. } = self.settings;
-        let open = self.objects.values().filter(|state| state.may_be_asked());
-        let held = open.filter_map(|state| match state.trust() {
-            Some(trust) => Some(Held::Answered { trust }),
-            None => Some(Held::Inferred { confidence: state.assessment()?.confidence }),
-        });
-        (gate == Gate::Adaptive)
-            .then(|| AdaptedThreshold::new(held, self.objects.len(), risk, self.track_record()))
-    }
-
-    /// Lines 13 to 17 of Algorithm 1: stop where the gate finds nothing to ask, else ask about the least sure.
-    /// Things that were asked about less often come first.
-    fn ask_or_finish(&mut self) -> Vec<Effect> {
-        let gate = self.settings.gate;
-        let unsettled: Vec<(&ObjectId, &ObjectState)> = self.unsettled().collect();
-        if unsettled.is_empty() {
-            return self.finish_up_to_date(Stopped::Confident);
-        }
-        if self.questions >= self.settings.max_questions {
-            return self.finish(Stopped::MaxQuestions);
-        }
-        let candidates = unsettled.iter().filter(|(_, state)| state.may_be_asked()).map(|(object, state)| {
-            Candidate { object, times_asked: state.times_asked(), assessment: state.assessment() }
-        });
-        match self.settings.choice {
-            QuestionChoice::LeastSure => match first_to_ask(gate, candidates).cloned() {
-                Some(object) => self.ask(object),
-                None => self.finish_up_to_date(Stopped::NothingLeftToAsk),
-            },
-            QuestionChoice::MostInformative => {
-                let few = first_few_to_ask(gate, candidates, MOST_WEIGHED);
-                let Some(first) = few.first() else {
-                    return self.finish_up_to_date(Stopped::NothingLeftToAsk);
-                };
-                let comparable = few.iter().filter(|other| {
-                    other.times_asked == first.times_asked
-                        && other.assessment.is_some() == first.assessment.is_some()
-                });
-                let objects: Vec<ObjectId> = comparable.map(|candidate| candidate.object.clone()).collect();
-                match objects.as_slice() {
-                    [only] => self.ask(only.clone()),
-                    _ => {
-                        self.phase = Phase::Weighing { objects: objects.clone() };
-                        vec![Effect::Weigh { objects }]
-                    }
-                }
-            }
-        }
-    }
-
-    fn ask(&mut self, object: ObjectId) -> Vec<Effect> {
-        self.phase = Phase::Asking { object: object.clone() };
-        vec![Effect::Ask { object }]
-    }
-
-    /// From which probability of its best owner set on a thing is settled without an answer by the gates that go by it.
-    pub fn settled_from(&self) -> f64 {
-        let adapted = self.adapted_threshold().map_or(0.0, |adapted| adapted.lambda());
-        self.settings.thresholds.lambda().max(adapted)
-    }
-
     /// Ends the run, unless an answer has not been taken into account.
     fn finish_up_to_date(&mut self, stopped: Stopped) -> Vec<Effect> {
         match self.questions_since_pass {
@@ -401,10 +319,14 @@ impl Agent {
     }
 
     /// APPLY-ANSWER and the counter, lines 19 and 20 of Algorithm 1.
-    fn apply_answer(&mut self, object: &ObjectId, reading: Reading) -> Vec<Effect> {
+    fn apply_answer(&mut self, objects: &[ObjectId], reading: Reading) -> Vec<Effect> {
         self.questions += 1;
-        if let Some(state) = self.objects.get_mut(object) {
-            state.apply_reading(reading);
+        for object in objects {
+            let Some(state) = self.objects.get_mut(object) else { continue };
+            match objects.len() > 1 && reading.is_unresolved() {
+                true => state.is_asked_alone(),
+                false => state.apply_reading(reading),
+            }
         }
         self.after_question()
     }

@@ -51,6 +51,8 @@ pub struct ObjectState {
     /// How sure one was before the answer, and whether that was right.
     claim: Option<(f64, bool)>,
     times_asked: u32,
+    /// Whether a question about it and others has left it open.
+    asked_alone: bool,
     closed_to_questions: bool,
     problem: Option<String>,
 }
@@ -147,6 +149,15 @@ impl ObjectState {
 
     pub(super) fn was_inferred(&self) -> bool {
         self.belief.is_some() || self.problem.is_some()
+    }
+
+    /// Whether a person was asked about it, alone or together with other things.
+    pub(super) fn was_asked(&self) -> bool {
+        self.times_asked > 0 || self.asked_alone
+    }
+
+    pub(super) fn is_asked_alone(&mut self) {
+        self.asked_alone = true;
     }
 
     pub(super) fn may_be_asked(&self) -> bool {

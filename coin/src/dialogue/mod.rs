@@ -5,6 +5,7 @@ mod answer;
 mod choices;
 mod confirmation;
 mod explanation;
+mod joint;
 mod question;
 pub(crate) mod thing;
 pub(crate) mod wording;
@@ -15,4 +16,5 @@ pub use confirmation::{Doubt, word_confirmation};
 pub use explanation::{
     Conclusion, Explained, Grounds, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };
+pub use joint::{read_joint_answer, without_all_of_them, word_joint_question};
 pub use question::{QuestionContext, word_question};

@@ -44,6 +44,14 @@ impl World {
         (0..self.things).map(|thing| id(&(thing * 3).to_string())).collect()
     }
 
+    /// Every three things are of a kind, in worlds of an even seed.
+    fn alike(&self) -> Vec<Vec<ObjectId>> {
+        match self.seed.is_multiple_of(2) {
+            true => self.objects().chunks(3).map(<[ObjectId]>::to_vec).collect(),
+            false => Vec::new(),
+        }
+    }
+
     /// A generator that depends on the seed, the thing and the moment, and on nothing else.
     fn generator(&self, object: &ObjectId, moment: usize) -> ChaCha8Rng {
         let thing: u64 = object.as_str().parse().unwrap();
@@ -79,13 +87,14 @@ impl World {
 
     /// Drives the agent to its end. Panics where a law of every single step is broken.
     fn run(&self) -> Trace {
-        let mut agent = Agent::new(self.settings.clone(), self.objects());
+        let mut agent = Agent::new(self.settings.clone(), self.objects()).asking_together(self.alike());
         let mut shuffle = ChaCha8Rng::seed_from_u64(self.order);
         let mut queue = vec![Event::Started];
         let (mut all, mut passes, mut questions) = (Vec::new(), 0, 0);
         let mut asked: BTreeMap<ObjectId, u32> = BTreeMap::new();
         let mut closed: BTreeSet<ObjectId> = BTreeSet::new();
         let mut chosen: Option<ObjectId> = None;
+        let mut together: BTreeSet<ObjectId> = BTreeSet::new();
         loop {
             assert!(!queue.is_empty(), "the agent waits for nothing");
             assert_misplaced_events_are_refused(&agent, &queue, self.objects().first());
@@ -116,6 +125,29 @@ impl World {
                         chosen =
                             doubt_left.iter().position(|&left| left == least).map(|at| objects[at].clone());
                         queue = vec![Event::Weighed { doubt_left }];
+                    }
+                    Effect::AskTogether { objects } => {
+                        assert!(objects.len() > 1);
+                        assert!(chosen.take().is_none_or(|chosen| chosen == objects[0]));
+                        let owners: BTreeSet<_> =
+                            objects.iter().map(|object| agent.object(object).unwrap().owners()).collect();
+                        assert_eq!(owners.len(), 1, "one question is about the same people's things");
+                        for object in objects {
+                            assert!(!closed.contains(object) && !asked.contains_key(object));
+                            assert!(
+                                together.insert(object.clone()),
+                                "{object} was asked about with others before"
+                            );
+                        }
+                        let reply = self.reply(&objects[0], questions);
+                        questions += 1;
+                        if reply != unresolved() {
+                            objects.iter().for_each(|object| *asked.entry(object.clone()).or_default() += 1);
+                        }
+                        if matches!(reply, Event::Declined) || reply == owned_by_a_stranger() {
+                            closed.extend(objects.iter().cloned());
+                        }
+                        queue = vec![reply];
                     }
                     Effect::Ask { object } => {
                         assert!(
@@ -241,8 +273,7 @@ proptest! {
         let most = MOST_TIMES_ASKED as usize * world.things;
         prop_assert!(trace.passes <= most + 1);
         prop_assert!(trace.asked.values().all(|&times| times <= MOST_TIMES_ASKED));
-        let put: u32 = trace.asked.values().sum();
-        prop_assert!(put as usize <= most.min(world.settings.max_questions));
+        prop_assert!(trace.agent.questions() <= world.settings.max_questions);
         for (object, times) in &trace.asked {
             let counted = trace.agent.object(object).unwrap().times_asked();
             prop_assert!(counted == *times || trace.stopped == Stopped::NothingLeftToAsk && counted + 1 == *times);

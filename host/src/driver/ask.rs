@@ -1,7 +1,9 @@
 //! One question: QUESTION-GENERATION, the person, UNDERSTAND-ANSWER, and the record of the answer.
 
 use coin::agent::{Agent, DOUBTFUL, Event, ObjectState};
-use coin::dialogue::{Doubt, Reading, word_confirmation};
+use coin::dialogue::{
+    Doubt, Reading, read_joint_answer, without_all_of_them, word_confirmation, word_joint_question,
+};
 use coin::owners::OwnerSet;
 use coin::roster::Roster;
 use coin_schemas::events::LogEvent;
@@ -26,9 +28,12 @@ enum Reply {
 }
 
 impl Run<'_> {
-    /// Puts the open question about a thing and says what became of it.
-    pub(super) async fn ask(&mut self, object: &ObjectId) -> Result<Event, DriveError> {
-        let mut object = object.clone();
+    /// Puts the open question about a thing, or about that and others, and says what became of it.
+    pub(super) async fn ask(
+        &mut self,
+        mut object: ObjectId,
+        mut also: Vec<ObjectId>,
+    ) -> Result<Event, DriveError> {
         if let Some(event) = self.past_question(&object).await? {
             return Ok(event);
         }
@@ -37,7 +42,7 @@ impl Run<'_> {
                 return Ok(Event::Ended { stopped: Stopped::Budget });
             }
             let step = self.agent.questions() + 1;
-            let (question, reply) = self.put(step, &object).await?;
+            let (question, reply) = self.put(step, &object, &also).await?;
             match reply {
                 Reply::Read { reading, answer, answered_by } => {
                     let ownership = self.driver.roster.ownership(reading.owners);
@@ -56,7 +61,7 @@ impl Run<'_> {
                 }
                 Reply::Undo => {
                     if let Some(before) = self.take_back().await? {
-                        object = before;
+                        (object, also) = before;
                     }
                 }
                 Reply::Ends(stopped) => return Ok(Event::Ended { stopped }),
@@ -124,15 +129,17 @@ impl Run<'_> {
 
     /// Takes the last answer back, so that its question is open again. The thing that it is about, or `None` where
     /// there is no answer to take back.
-    async fn take_back(&mut self) -> Result<Option<ObjectId>, DriveError> {
+    async fn take_back(&mut self) -> Result<Option<(ObjectId, Vec<ObjectId>)>, DriveError> {
         let (Some(agent), Some(question)) = (self.open.pop(), self.questions.pop()) else { return Ok(None) };
         self.driver.journal.undone()?;
         let after = std::mem::replace(&mut self.agent, agent);
         // The state before the question that is given up goes; that before the question that is put again stays.
         self.history.pop();
         if question.status == AnswerStatus::Answered {
-            let arguments = RetractAnswer { object_id: question.object_id.to_string() };
-            let _: RetractAnswerResult = self.driver.server.call("retract_answer", &arguments).await?;
+            for object in question.objects() {
+                let arguments = RetractAnswer { object_id: object.to_string() };
+                let _: RetractAnswerResult = self.driver.server.call("retract_answer", &arguments).await?;
+            }
         }
         // What was inferred since rests on the answer.
         let believed = |agent: &Agent, object: &ObjectId| {
@@ -150,12 +157,19 @@ impl Run<'_> {
             step: question.step,
             object_id: question.object_id.clone(),
         })?;
-        Ok(Some(question.object_id))
+        Ok(Some((question.object_id, question.also)))
     }
 
     /// Words the question, puts it, and reads what is said.
-    async fn put(&mut self, step: usize, object: &ObjectId) -> Result<(QuestionReport, Reply), DriveError> {
+    async fn put(
+        &mut self,
+        step: usize,
+        object: &ObjectId,
+        also: &[ObjectId],
+    ) -> Result<(QuestionReport, Reply), DriveError> {
         let thing = self.driver.thing(object)?.clone();
+        let others =
+            also.iter().map(|other| self.driver.thing(other).cloned()).collect::<Result<Vec<_>, _>>()?;
         let state = self.agent.object(object).cloned().unwrap_or_default();
         let roster = self.driver.roster;
         let scores = match state.scores() {
@@ -167,6 +181,7 @@ impl Run<'_> {
         let mut put = QuestionReport {
             step,
             object_id: object.clone(),
+            also: also.to_vec(),
             question: String::new(),
             answer: String::new(),
             answered_by: None,
@@ -179,13 +194,14 @@ impl Run<'_> {
         let worded = tokio::select! {
             biased;
             () = stop.cancelled() => return Ok((put, Reply::Ends(Stopped::Interrupted))),
-            worded = self.driver.word(&thing, &scores, &state) => worded?,
+            worded = self.driver.word(&thing, &scores, &state, also.len()) => worded?,
         };
         let Some(question) = worded else { return Ok((put, Reply::Ends(Stopped::Budget))) };
         put.question.clone_from(&question);
         self.driver.observer.observe(&LogEvent::QuestionAsked {
             step,
             object_id: object.clone(),
+            also: also.to_vec(),
             question: question.clone(),
         })?;
         let before = self.previous_answer();
@@ -193,6 +209,7 @@ impl Run<'_> {
         let put_question = PutQuestion {
             step,
             object: &thing,
+            also: &others,
             question: &question,
             candidates: &likeliest_first(roster, &scores),
             times_asked: state.times_asked(),
@@ -204,19 +221,23 @@ impl Run<'_> {
             () = stop.cancelled() => Response::Stop,
             response = self.driver.person.ask(&put_question) => response?,
         };
+        let of_all =
+            |reading| if also.is_empty() { reading } else { read_joint_answer(reading, state.owners()) };
         let household: Owners = roster.names().cloned().collect();
         let in_words = response.in_words(&household).unwrap_or_default();
         let reply = match response {
             Response::Said { answer, answered_by } => {
-                let reading = self.driver.read_answer(&question, &answer, answered_by.as_ref()).await?;
-                Reply::Read { reading, answer, answered_by }
+                let heard = if also.is_empty() { answer.clone() } else { without_all_of_them(&answer) };
+                let reading = self.driver.read_answer(&question, &heard, answered_by.as_ref()).await?;
+                Reply::Read { reading: of_all(reading), answer, answered_by }
             }
             Response::Chose { owners, owner_outside_household, answered_by } => {
                 let owners =
                     roster.owner_set(&owners).map_err(|error| DriveError::Malformed(error.to_string()))?;
                 // A thing that a member owns together with a stranger is that member's as far as the home goes.
                 let outside_household = owner_outside_household && owners.is_empty();
-                Reply::Read { reading: Reading { owners, outside_household }, answer: in_words, answered_by }
+                let reading = of_all(Reading { owners, outside_household });
+                Reply::Read { reading, answer: in_words, answered_by }
             }
             Response::Declined => Reply::Declined,
             Response::Undo => Reply::Undo,
@@ -248,27 +269,39 @@ impl Driver<'_> {
         question: &QuestionReport,
         owner_outside_household: bool,
     ) -> Result<(), DriveError> {
-        let arguments = RecordAnswer {
-            object_id: question.object_id.to_string(),
-            question: question.question.clone(),
-            answer: question.answer.clone(),
-            ownership: question.ownership.iter().map(|(name, &owner)| (name.to_string(), owner)).collect(),
-            owner_outside_household,
-            answered_by: question.answered_by.as_ref().map(UserName::to_string),
-            as_of: Some(self.as_of.to_string()),
-        };
-        let recorded: RecordAnswerResult = self.server.call("record_answer", &arguments).await?;
-        debug_assert_eq!(recorded.status, question.status);
+        for object in question.objects() {
+            let arguments = RecordAnswer {
+                object_id: object.to_string(),
+                question: question.question.clone(),
+                answer: question.answer.clone(),
+                ownership: question
+                    .ownership
+                    .iter()
+                    .map(|(name, &owner)| (name.to_string(), owner))
+                    .collect(),
+                owner_outside_household,
+                answered_by: question.answered_by.as_ref().map(UserName::to_string),
+                as_of: Some(self.as_of.to_string()),
+            };
+            let recorded: RecordAnswerResult = self.server.call("record_answer", &arguments).await?;
+            debug_assert_eq!(recorded.status, question.status);
+        }
         Ok(())
     }
 
-    /// A question, or whether an answer was right, which no model has to word; `None` where no more tokens may be spent.
+    /// A question; `None` where no more tokens may be spent. Whether an answer was right, and whether several things belong to
+    /// the same people, no model has to word.
     async fn word(
         &mut self,
         thing: &TaskObject,
         scores: &[Score],
         state: &ObjectState,
+        others: usize,
     ) -> Result<Option<String>, DriveError> {
+        if others > 0 {
+            let (class, room) = (thing.class.as_str(), thing.room.as_deref());
+            return Ok(Some(word_joint_question(self.roster, class, room, state.owners())));
+        }
         let (Some(reading), Some(trust)) = (state.answer(), state.trust()) else {
             return self.word_question(thing, scores, state.times_asked()).await;
         };

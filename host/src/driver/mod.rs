@@ -206,7 +206,16 @@ impl Run<'_> {
                         let standings = self.driver.standings(&self.agent);
                         self.history.push(standings);
                         debug_assert_eq!(self.history.len(), self.questions.len() + 1);
-                        events.push(self.ask(&object).await?);
+                        events.push(self.ask(object, Vec::new()).await?);
+                    }
+                    Effect::AskTogether { objects } => {
+                        let standings = self.driver.standings(&self.agent);
+                        self.history.push(standings);
+                        let mut objects = objects.into_iter();
+                        let first = objects
+                            .next()
+                            .ok_or_else(|| DriveError::Malformed("a question about nothing".to_owned()))?;
+                        events.push(self.ask(first, objects.collect()).await?);
                     }
                     Effect::Finish { stopped } => {
                         let mut unstored = std::mem::take(&mut self.unstored);

@@ -116,6 +116,7 @@ async fn ask(
     let put = PutQuestion {
         step,
         object,
+        also: &[],
         question: &question,
         candidates: &candidates,
         times_asked: 0,

@@ -47,6 +47,7 @@ fn inference(values: [f64; 3]) -> Inference {
 
 fn question(object: &str) -> QuestionReport {
     QuestionReport {
+        also: Vec::new(),
         step: 1,
         object_id: thing(object),
         question: "Whose is it?".to_owned(),
@@ -111,13 +112,13 @@ fn what_was_taken_back_is_not_told_again() {
     journal.undone().unwrap();
     drop(journal);
     let mut journal = go_on(&db(&folder)).unwrap();
-    assert_eq!(journal.withdrawn(), Some(&thing("1")), "the database may still know the answer");
+    assert_eq!(journal.withdrawn(), [thing("1")], "the database may still know the answer");
     assert!(journal.past_inference(&thing("1")).is_some());
     assert_eq!(journal.past_inference(&thing("2")), None);
     assert_eq!(journal.past_question(&thing("1")), None);
     journal.answered(&question("1"), false).unwrap();
     drop(journal);
-    assert_eq!(go_on(&db(&folder)).unwrap().withdrawn(), None, "it was answered anew");
+    assert_eq!(go_on(&db(&folder)).unwrap().withdrawn(), [], "it was answered anew");
 }
 
 /// A crash may tear the last line at any byte, also within a letter.

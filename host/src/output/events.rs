@@ -87,6 +87,7 @@ mod tests {
         LogEvent::QuestionAsked {
             step,
             object_id: ObjectId::new("3").unwrap(),
+            also: Vec::new(),
             question: question.to_owned(),
         }
     }

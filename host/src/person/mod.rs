@@ -38,6 +38,8 @@ pub struct PutQuestion<'a> {
     pub step: usize,
     /// The thing that it is about.
     pub object: &'a TaskObject,
+    /// Other things that it is about as well, of the same class in the same room.
+    pub also: &'a [TaskObject],
     /// The question itself.
     pub question: &'a str,
     /// The members of the household, the likeliest owner first.

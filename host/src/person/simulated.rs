@@ -14,6 +14,7 @@ mod tests;
 use async_trait::async_trait;
 use coin_schemas::episode::Truth;
 use coin_schemas::household::{ObjectId, UserName, Users};
+use coin_schemas::model::TaskObject;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -76,6 +77,17 @@ impl SimulatedPerson {
         (wordings.swap_remove(chosen), speaker.cloned())
     }
 
+    /// What is said to a question about several things: whose they are, or that they are not the same people's. Whoever errs
+    /// errs about all of them.
+    fn answer_for_all(&self, first: &ObjectId, others: &[TaskObject]) -> (String, Option<UserName>) {
+        let owners = self.truth.owners.get(first);
+        if others.iter().all(|other| self.truth.owners.get(&other.id) == owners) {
+            return self.answer(first, 0);
+        }
+        let (_, speaker) = self.answer(first, 0);
+        ("No, they are not all the same people's.".to_owned(), speaker)
+    }
+
     /// A generator of its own for each thing and each time it is asked about.
     fn generator(&self, object: &ObjectId, draw: u32) -> ChaCha8Rng {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
@@ -97,7 +109,10 @@ impl Person for SimulatedPerson {
     }
 
     async fn ask(&mut self, question: &PutQuestion<'_>) -> Result<Response, PersonError> {
-        let (answer, answered_by) = self.answer(&question.object.id, question.times_asked);
+        let (answer, answered_by) = match question.also {
+            [] => self.answer(&question.object.id, question.times_asked),
+            others => self.answer_for_all(&question.object.id, others),
+        };
         Ok(Response::Said { answer, answered_by })
     }
 }

@@ -36,7 +36,7 @@ pub(crate) fn how_sure(object: &ObjectReport) -> String {
 /// What the conclusion rests on, and what is left open.
 pub(crate) fn why(report: &Report, object: &ObjectReport) -> String {
     let questions: Vec<&QuestionReport> =
-        report.questions.iter().filter(|question| question.object_id == object.id).collect();
+        report.questions.iter().filter(|question| question.is_about(&object.id)).collect();
     let mut reasons: Vec<String> = Vec::new();
     match object.source {
         Source::Answer => {

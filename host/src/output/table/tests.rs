@@ -61,6 +61,7 @@ fn answered(id: &str, class: &str, names: &str) -> ObjectReport {
 
 fn question(step: usize, id: &str, answer: &str, status: AnswerStatus) -> QuestionReport {
     QuestionReport {
+        also: Vec::new(),
         step,
         object_id: ObjectId::new(id).unwrap(),
         question: "Whose is it?".to_owned(),

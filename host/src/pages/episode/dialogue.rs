@@ -31,7 +31,7 @@ fn exchange(
     let changed = changed(question, input);
     html! {
         li data-step=(question.step) {
-            p.about { "Q" (question.step) " · " (link(&question.object_id, input)) }
+            p.about { "Q" (question.step) " · " (link(&question.object_id, input)) @for other in &question.also { ", " (link(other, input)) } }
             p.robot { span.who { "COIN" } " " (question.question) }
             @if question.answer.is_empty() { p.person.quiet { "No answer." } }
             @else { p.person { span.who { (who) } " “" (question.answer.trim()) "”" } }
@@ -83,7 +83,7 @@ fn changed<'a>(question: &QuestionReport, input: EpisodePage<'a>) -> Vec<(&'a Ob
     after
         .iter()
         .filter(|(object, belief)| {
-            **object != question.object_id
+            !question.is_about(object)
                 && belief.source == Source::Inferred
                 && before.get(*object).is_some_and(|earlier| earlier.owners != belief.owners)
         })

@@ -211,7 +211,7 @@ fn placed<'a>(input: EpisodePage<'a>, household: &Owners) -> Vec<PlacedThing<'a>
             }
             held = Some(belief);
         }
-        let asked = report.questions.iter().filter(|asked| asked.object_id == object.id);
+        let asked = report.questions.iter().filter(|asked| asked.is_about(&object.id));
         PlacedThing {
             class: object.class.as_str(),
             room: object.room.as_deref(),

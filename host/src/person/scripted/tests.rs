@@ -29,6 +29,7 @@ async fn ask(person: &mut ScriptedPerson, id: &str) -> Response {
     let question = PutQuestion {
         step: 1,
         object: &object,
+        also: &[],
         question: "Whose?",
         candidates: &[],
         times_asked: 0,

@@ -39,6 +39,7 @@ async fn ask(person: &mut SimulatedPerson, id: &str, times_asked: u32) -> (Strin
     let question = PutQuestion {
         step: 1,
         object: &object,
+        also: &[],
         question: "Whose?",
         candidates: &[],
         times_asked,

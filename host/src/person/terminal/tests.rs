@@ -82,6 +82,7 @@ impl Dialogue<'_> {
         let question = PutQuestion {
             step: 2,
             object: &object,
+            also: &[],
             question: self.question,
             candidates: &self.candidates,
             times_asked: 0,
@@ -369,6 +370,7 @@ async fn answers_one_question_after_the_other_and_remembers_who_speaks() {
     let question = PutQuestion {
         step: 1,
         object: &object,
+        also: &[],
         question: "Whose?",
         candidates: &candidates,
         times_asked: 0,
@@ -410,6 +412,7 @@ async fn a_broken_way_to_the_person_is_an_error() {
     let question = PutQuestion {
         step: 1,
         object: &object,
+        also: &[],
         question: "Whose?",
         candidates: &[],
         times_asked: 0,
