@@ -19,13 +19,14 @@ use thiserror::Error;
 
 use crate::cli::default_levels;
 use crate::client::ServerAddress;
+use crate::course::{Course, drive};
 use crate::driver::Unobserved;
 use crate::home::{self, Home};
 use crate::model::ChatModel;
 use crate::parallel;
 use crate::person::{Person, PersonError, PersonKind, PutQuestion, Response};
 use crate::report::true_owners;
-use crate::run::{Course, RunError, drive};
+use crate::run::RunError;
 
 /// Why a calibration file is refused.
 #[derive(Debug, Error)]

@@ -7,6 +7,7 @@ pub mod ask;
 pub mod calibrate;
 pub mod cli;
 pub mod client;
+mod course;
 pub mod driver;
 pub mod estimation;
 pub mod evidence;

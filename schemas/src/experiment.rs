@@ -120,7 +120,7 @@ pub struct SurvivalStep {
     pub censored: usize,
 }
 
-/// A term of the evidence model that can be left out.
+/// A term that can be left out: of the evidence model, or of what is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Term {
@@ -136,6 +136,8 @@ pub enum Term {
     ChangeOfHands,
     /// The habits of the home are learnt from all its things and answers.
     Habits,
+    /// The question is chosen by how much doubt its answer leaves in the whole home, and not by how sure its thing is.
+    BestQuestion,
 }
 
 /// Fresh homes of one kind, judged with every term of the evidence model and without each.

@@ -26,21 +26,32 @@ pub fn word_joint_question(roster: &Roster, class: &str, room: Option<&str>, own
     }
 }
 
-/// An answer to a question about several things without the words that say of which of them it speaks, where that is all, so
-/// that they are not taken for people.
-pub fn without_all_of_them(answer: &str) -> String {
-    const OF_THEM: [&str; 5] =
-        ["every one of them", "every single one", "each of them", "both of them", "all of them"];
-    let lower = answer.to_lowercase();
-    // Lower case may have another length in other scripts; such an answer is left as it is.
-    let found = OF_THEM.iter().find_map(|words| Some((lower.find(words)?, words.len())));
-    match found.filter(|_| answer.is_ascii()) {
-        Some((start, length)) => {
-            let before = answer[..start].trim_end().trim_end_matches(',');
-            format!("{before}{}", &answer[start + length..])
+/// What is said of several things, and the same said of one.
+const OF_ONE: [(&str, &str); 12] = [
+    (", every one of them", ""),
+    (", each of them", ""),
+    (", both of them", ""),
+    (", all of them", ""),
+    ("they belong", "it belongs"),
+    ("they are", "it is"),
+    ("they're", "it's"),
+    ("those are", "that is"),
+    ("these are", "this is"),
+    ("share them", "share it"),
+    ("own them", "own it"),
+    ("use them", "use it"),
+];
+
+/// An answer about several things as if it spoke of one, so that "them" is not taken for people.
+pub fn as_of_one_thing(answer: &str) -> String {
+    let mut spoken = answer.to_owned();
+    for (of_several, of_one) in OF_ONE {
+        // Lower case may have another length in other scripts; such words are none of these.
+        while let Some(start) = spoken.to_ascii_lowercase().find(of_several) {
+            spoken.replace_range(start..start + of_several.len(), of_one);
         }
-        None => answer.to_owned(),
     }
+    spoken
 }
 
 /// What the reading of an answer says of several things. It settles them where it names the very people that were asked
@@ -59,6 +70,16 @@ mod tests {
     use crate::support::set;
 
     #[rstest]
+    #[case("They belong to Tom.", "it belongs to Tom.")]
+    #[case("Yes, all of them, they're mine", "Yes, it's mine")]
+    #[case("Bob and I share them", "Bob and I share it")]
+    #[case("It is one of them", "It is one of them")]
+    #[case("Ðorđe: they belong to İpek, ſ", "Ðorđe: it belongs to İpek, ſ")]
+    fn several_are_spoken_of_as_one(#[case] answer: &str, #[case] spoken: &str) {
+        assert_eq!(as_of_one_thing(answer), spoken);
+    }
+
+    #[rstest]
     #[case("mug", Some("kitchen"), &[2], "Is every mug in the kitchen Tom's?")]
     #[case("pencil", None, &[2], "Is every pencil Tom's?")]
     #[case("scissors", Some("study"), &[0, 1], "Do Bob and Mary share the scissors in the study?")]
@@ -73,7 +94,7 @@ mod tests {
         let worded = word_joint_question(&roster, class, room, set(asked));
         assert_eq!(worded, question);
         let read = |answer| {
-            let answer = without_all_of_them(answer);
+            let answer = as_of_one_thing(answer);
             read_joint_answer(read_answer(&roster, &worded, &answer, None), set(asked))
         };
         for yes in ["Yes.", "Yes, all of them.", "Yes, every one of them!", "yes"] {

@@ -16,5 +16,5 @@ pub use confirmation::{Doubt, word_confirmation};
 pub use explanation::{
     Conclusion, Explained, Grounds, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };
-pub use joint::{read_joint_answer, without_all_of_them, word_joint_question};
+pub use joint::{as_of_one_thing, read_joint_answer, word_joint_question};
 pub use question::{QuestionContext, word_question};

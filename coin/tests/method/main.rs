@@ -14,3 +14,4 @@ mod outdated;
 mod reinference;
 mod run;
 mod run_laws;
+mod together;

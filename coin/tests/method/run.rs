@@ -52,6 +52,10 @@ pub(crate) fn ask(object: &str) -> Effect {
     Effect::Ask { object: id(object) }
 }
 
+pub(crate) fn ask_together(objects: &[&str]) -> Effect {
+    Effect::AskTogether { objects: ids(objects) }
+}
+
 pub(crate) fn finish(stopped: Stopped) -> Effect {
     Effect::Finish { stopped }
 }
@@ -100,6 +104,12 @@ pub(crate) struct Run {
 impl Run {
     pub(crate) fn new(settings: AgentSettings, objects: &[&str]) -> Self {
         Self { agent: Agent::new(settings, ids(objects)) }
+    }
+
+    /// The same, where these things may be asked about at once.
+    pub(crate) fn with_alike(settings: AgentSettings, objects: &[&str], alike: &[&[&str]]) -> Self {
+        let alike = alike.iter().map(|group| ids(group)).collect();
+        Self { agent: Agent::new(settings, ids(objects)).asking_together(alike) }
     }
 
     /// Starts a run; the first pass gives every thing these scores.

@@ -2,7 +2,7 @@
 
 use coin::agent::{Agent, DOUBTFUL, Event, ObjectState};
 use coin::dialogue::{
-    Doubt, Reading, read_joint_answer, without_all_of_them, word_confirmation, word_joint_question,
+    Doubt, Reading, as_of_one_thing, read_joint_answer, word_confirmation, word_joint_question,
 };
 use coin::owners::OwnerSet;
 use coin::roster::Roster;
@@ -227,7 +227,7 @@ impl Run<'_> {
         let in_words = response.in_words(&household).unwrap_or_default();
         let reply = match response {
             Response::Said { answer, answered_by } => {
-                let heard = if also.is_empty() { answer.clone() } else { without_all_of_them(&answer) };
+                let heard = if also.is_empty() { answer.clone() } else { as_of_one_thing(&answer) };
                 let reading = self.driver.read_answer(&question, &heard, answered_by.as_ref()).await?;
                 Reply::Read { reading: of_all(reading), answer, answered_by }
             }

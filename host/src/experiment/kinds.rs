@@ -20,9 +20,10 @@ use super::{
     Calibrations, CoverageHomes, ExperimentError, ExperimentSettings, JudgedHome, Progress, load_home,
 };
 use crate::calibrate::{HomeScoring, score_homes};
+use crate::course::Course;
 use crate::model::ChatModel;
 use crate::parallel;
-use crate::run::{Course, default_scoring};
+use crate::run::default_scoring;
 
 /// The first seeds of the homes that are judged and of those that thresholds are made from. They are used for nothing
 /// else.
@@ -34,21 +35,40 @@ const CALIBRATION_SEED: u64 = 7101;
 const CALIBRATION_HOMES: usize = 30;
 
 /// The terms, in the order of the table.
-const TERMS: [Term; 6] =
-    [Term::Class, Term::Place, Term::Looks, Term::Turns, Term::ChangeOfHands, Term::Habits];
+const TERMS: [Term; 7] = [
+    Term::Class,
+    Term::Place,
+    Term::Looks,
+    Term::Turns,
+    Term::ChangeOfHands,
+    Term::Habits,
+    Term::BestQuestion,
+];
 
-/// The parameters without a term.
-fn without(term: Option<Term>) -> EvidenceParameters {
+/// How things are judged and questions chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Variant {
+    parameters: EvidenceParameters,
+    choice: QuestionChoice,
+}
+
+/// Everything but a term.
+fn without(term: Option<Term>) -> Variant {
     let whole = EvidenceParameters::default();
-    match term {
-        None => whole,
+    let choice = match term {
+        Some(Term::BestQuestion) => QuestionChoice::LeastSure,
+        _ => QuestionChoice::MostInformative,
+    };
+    let parameters = match term {
+        None | Some(Term::BestQuestion) => whole,
         Some(Term::Class) => EvidenceParameters { common_sense: 0.0, language_model: 0.0, ..whole },
         Some(Term::Place) => EvidenceParameters { place: 0.0, nearness: 0.0, ..whole },
         Some(Term::Looks) => EvidenceParameters { looks: 0.0, resemblance: 0.0, ..whole },
         Some(Term::Turns) => EvidenceParameters { turns: 0.0, ..whole },
         Some(Term::ChangeOfHands) => EvidenceParameters { change_of_hands: 0.0, ..whole },
         Some(Term::Habits) => EvidenceParameters { habits: HabitSource::Ordinary, ..whole },
-    }
+    };
+    Variant { parameters, choice }
 }
 
 /// Judges fresh homes of every kind that is asked for, with all terms and without each.
@@ -132,7 +152,7 @@ impl Trial<'_> {
     /// Makes thresholds with these parameters and lets COIN ask by them.
     async fn by_gate(
         &self,
-        parameters: EvidenceParameters,
+        variant: Variant,
         gate: Gate,
         progress: &mut (dyn Progress + Send),
     ) -> Result<Vec<Scored>, ExperimentError> {
@@ -141,7 +161,7 @@ impl Trial<'_> {
             history: History::Whole,
             withheld: BTreeSet::new(),
             scoring,
-            parameters,
+            parameters: variant.parameters,
             concurrency: self.settings.concurrency,
         };
         let scored = score_homes(&self.calibrated_on, &how, self.model, || progress.step()).await?;
@@ -155,17 +175,17 @@ impl Trial<'_> {
         let samples: Vec<_> = scored.into_iter().flat_map(|home| home.samples).collect();
         let score = NonconformityScore::AllOwners;
         let thresholds = Thresholds::from(&calibrate(provenance, &samples, self.settings.levels, score)?);
-        self.asked(parameters, gate, thresholds, progress).await
+        self.asked(variant, gate, thresholds, progress).await
     }
 
     /// COIN that asks about everything, the least sure first: the whole curve, past where a gate would stop.
     async fn asked_on(&self, progress: &mut (dyn Progress + Send)) -> Result<Vec<Scored>, ExperimentError> {
-        self.asked(EvidenceParameters::default(), Gate::Always, Thresholds::Uncalibrated, progress).await
+        self.asked(without(None), Gate::Always, Thresholds::Uncalibrated, progress).await
     }
 
     async fn asked(
         &self,
-        parameters: EvidenceParameters,
+        variant: Variant,
         gate: Gate,
         thresholds: Thresholds,
         progress: &mut (dyn Progress + Send),
@@ -184,8 +204,9 @@ impl Trial<'_> {
                 choice: QuestionChoice::default(),
                 answers_per_pass: 1,
             };
-            let course =
-                Course::new(settings, BTreeSet::new(), scoring, concurrency).with_parameters(parameters);
+            let course = Course::new(settings, BTreeSet::new(), scoring, concurrency)
+                .with_parameters(variant.parameters)
+                .choosing(variant.choice);
             async move {
                 let outcome = methods::carried_out(&home, model.as_ref(), course, home.person(seed)).await;
                 scored(outcome, &home)
@@ -234,7 +255,7 @@ mod tests {
     #[test]
     fn every_term_is_left_out_by_itself() {
         let whole = without(None);
-        assert_eq!(whole, EvidenceParameters::default());
+        assert_eq!(whole.parameters, EvidenceParameters::default());
         let variants: Vec<_> = TERMS.iter().map(|&term| without(Some(term))).collect();
         for (place, variant) in variants.iter().enumerate() {
             assert_ne!(*variant, whole);

@@ -17,11 +17,12 @@ use coin_schemas::report::{Cost, Gate, Scoring, Withheld};
 use super::{Calibrations, JudgedHome, actowl};
 use crate::cli::default_levels;
 use crate::client::ServerAddress;
+use crate::course::{Course, drive};
 use crate::driver::{Standing, Unobserved};
 use crate::home::Home;
 use crate::model::ChatModel;
 use crate::person::{ErrorRate, SimulatedPerson};
-use crate::run::{Course, RunError, default_scoring, drive};
+use crate::run::{RunError, default_scoring};
 
 /// What came of one run of one method.
 #[derive(Debug, Clone, PartialEq)]

@@ -20,7 +20,7 @@ use rand_chacha::ChaCha8Rng;
 
 use self::mistakes::taken_for;
 pub use self::mistakes::{ErrorRate, InvalidErrorRate};
-use self::phrases::{Facts, answers};
+use self::phrases::{Facts, NOT_THE_SAME, answers, answers_for_all};
 use super::{Person, PersonError, PersonKind, PutQuestion, Response};
 
 /// The draws that decide on errors, apart from those of the words.
@@ -49,30 +49,25 @@ impl SimulatedPerson {
         Self { wrong_answers, ..self }
     }
 
-    fn answer(&self, object: &ObjectId, times_asked: u32) -> (String, Option<UserName>) {
-        let members: Vec<&UserName> = self.users.keys().collect();
-        let mut random = self.generator(object, 0);
-        let speaker = (!members.is_empty()).then(|| {
-            let first = random.random_range(0..members.len());
-            members[(first + times_asked as usize) % members.len()]
-        });
+    fn answer(
+        &self,
+        object: &ObjectId,
+        times_asked: u32,
+        words: fn(&Facts<'_>) -> Vec<String>,
+    ) -> (String, Option<UserName>) {
+        let speaker = self.speaker(object, times_asked);
         let owners = self.truth.owners.get(object);
         let mut error = self.generator(object, ERRORS | times_asked);
         let taken = owners.and_then(|owners| taken_for(owners, &self.users, self.wrong_answers, &mut error));
+        let usage_types = self.truth.usage_type.as_ref();
         let facts = Facts {
             users: &self.users,
             owners: taken.as_ref().or(owners),
             // What is said beside it would not fit other owners.
-            usage_type: self
-                .truth
-                .usage_type
-                .as_ref()
-                .filter(|_| taken.is_none())
-                .and_then(|types| types.get(object))
-                .copied(),
+            usage_type: usage_types.filter(|_| taken.is_none()).and_then(|types| types.get(object)).copied(),
             speaker,
         };
-        let mut wordings = answers(&facts);
+        let mut wordings = words(&facts);
         let chosen = self.generator(object, times_asked.saturating_add(1)).random_range(0..wordings.len());
         (wordings.swap_remove(chosen), speaker.cloned())
     }
@@ -81,11 +76,19 @@ impl SimulatedPerson {
     /// errs about all of them.
     fn answer_for_all(&self, first: &ObjectId, others: &[TaskObject]) -> (String, Option<UserName>) {
         let owners = self.truth.owners.get(first);
-        if others.iter().all(|other| self.truth.owners.get(&other.id) == owners) {
-            return self.answer(first, 0);
+        match others.iter().all(|other| self.truth.owners.get(&other.id) == owners) {
+            true => self.answer(first, 0, answers_for_all),
+            false => (NOT_THE_SAME.to_owned(), self.speaker(first, 0).cloned()),
         }
-        let (_, speaker) = self.answer(first, 0);
-        ("No, they are not all the same people's.".to_owned(), speaker)
+    }
+
+    fn speaker(&self, object: &ObjectId, times_asked: u32) -> Option<&UserName> {
+        let members: Vec<&UserName> = self.users.keys().collect();
+        let mut random = self.generator(object, 0);
+        (!members.is_empty()).then(|| {
+            let first = random.random_range(0..members.len());
+            members[(first + times_asked as usize) % members.len()]
+        })
     }
 
     /// A generator of its own for each thing and each time it is asked about.
@@ -110,7 +113,7 @@ impl Person for SimulatedPerson {
 
     async fn ask(&mut self, question: &PutQuestion<'_>) -> Result<Response, PersonError> {
         let (answer, answered_by) = match question.also {
-            [] => self.answer(&question.object.id, question.times_asked),
+            [] => self.answer(&question.object.id, question.times_asked, answers),
             others => self.answer_for_all(&question.object.id, others),
         };
         Ok(Response::Said { answer, answered_by })

@@ -31,6 +31,7 @@ fn always_asks_about_everything_and_ends_without_a_mistake() {
 
 #[rstest]
 #[case("risk")]
+#[case("adaptive")]
 #[case("set")]
 #[case("paper")]
 fn every_other_gate_asks_what_it_needs(#[case] gate: &str) {
@@ -48,6 +49,14 @@ fn every_other_gate_asks_what_it_needs(#[case] gate: &str) {
         }
         for object in report["objects"].as_array().unwrap() {
             assert!(object["uncertainty"].as_f64().unwrap() <= threshold, "{object:#}");
+        }
+    }
+    if gate == "adaptive" {
+        assert_eq!(report["parameters"]["risk"], 0.012);
+        let threshold = report["adapted"]["lambda"].as_f64().unwrap();
+        assert!(threshold >= report["calibration"]["lambda"].as_f64().unwrap());
+        for object in report["objects"].as_array().unwrap() {
+            assert!(object["confidence"].as_f64().unwrap() >= threshold, "{object:#}");
         }
     }
     if gate == "risk" {

@@ -12,6 +12,7 @@ mod refused_episodes;
 mod refused_use;
 mod reports;
 mod servers;
+mod together;
 
 use std::path::Path;
 

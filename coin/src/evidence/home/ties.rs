@@ -128,9 +128,9 @@ impl KnownPairs {
         let freedom = count - kinds.len() as f64;
         let variance = kinds.iter().map(|(_, pairs)| spread(pairs)).sum::<f64>() / freedom;
         let slopes = regression.slopes();
-        let clear = 1.0 - SHRINKAGE * variance / slopes.dot(regression.with_relation);
-        (freedom > 0.0 && variance > 0.0 && clear > 0.0).then(|| {
-            let slopes = slopes.scaled(clear);
+        let explained = slopes.dot(regression.with_relation);
+        (freedom > 0.0 && variance > 0.0 && explained > SHRINKAGE * variance).then(|| {
+            let slopes = slopes.scaled(1.0 - SHRINKAGE * variance / explained);
             TieLine { apart: mean - slopes.dot(centre), slopes, variance, mean }
         })
     }
@@ -173,5 +173,46 @@ impl Regression {
         } else {
             both
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::support::set;
+
+    fn line(pairs: &[(&[usize], &[usize], f64)]) -> Option<TieLine> {
+        let mut known = KnownPairs::default();
+        pairs.iter().for_each(|&(one, other, relation)| known.add(set(one), set(other), relation));
+        known.line()
+    }
+
+    #[test]
+    fn common_owners_that_explain_much_are_a_line() {
+        let line = line(&[
+            (&[0], &[0], 0.8),
+            (&[1], &[1], 0.9),
+            (&[0], &[0], 0.85),
+            (&[0], &[1], 0.1),
+            (&[1], &[2], 0.0),
+            (&[0], &[2], 0.05),
+        ]);
+        let line = line.unwrap();
+        let (alike, apart) = (line.expected(set(&[2]), set(&[2])), line.expected(set(&[2]), set(&[1])));
+        assert!(alike > 0.7 && alike < 0.85 && apart > 0.05 && apart < 0.2, "{alike} {apart}");
+    }
+
+    /// Neither tie makes things less alike, so that the slopes are 0 and explain nothing.
+    #[test]
+    fn common_owners_that_make_things_less_alike_are_none() {
+        let unlike = [(&[0][..], &[0][..], 0.0), (&[1], &[1], 0.1), (&[0], &[1], 0.8), (&[1], &[2], 0.9)];
+        assert_eq!(line(&unlike), None);
+    }
+
+    #[test]
+    fn too_few_pairs_are_none() {
+        assert_eq!(line(&[]), None);
+        assert_eq!(line(&[(&[0], &[0], 0.9)]), None);
+        assert_eq!(line(&[(&[0], &[0], 0.9), (&[0], &[1], 0.1)]), None);
     }
 }

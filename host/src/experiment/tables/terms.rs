@@ -14,6 +14,7 @@ fn name(left_out: Option<Term>) -> &'static str {
         Some(Term::Turns) => "turns",
         Some(Term::ChangeOfHands) => "change of hands",
         Some(Term::Habits) => "learning the home's habits",
+        Some(Term::BestQuestion) => "the best question",
     }
 }
 

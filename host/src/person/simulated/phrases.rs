@@ -38,6 +38,26 @@ pub(super) fn answers(facts: &Facts<'_>) -> Vec<String> {
     }
 }
 
+/// What is said of several things that are not all the same people's.
+pub(super) const NOT_THE_SAME: &str = "No, they are not all the same people's.";
+
+/// Every true answer about several things of the same owners, never none.
+pub(super) fn answers_for_all(facts: &Facts<'_>) -> Vec<String> {
+    let Some(owners) = facts.owners else { return owned(&["I don't know whose they are."]) };
+    let everybody = owners.len() > 1 && owners.len() == facts.users.len();
+    let owners: Vec<&UserName> = owners.iter().collect();
+    match owners.as_slice() {
+        [] => owned(&["They belong to a neighbour."]),
+        [owner] if facts.speaker == Some(*owner) => owned(&["They are mine.", "They belong to me."]),
+        [owner] => vec![format!("They are {owner}'s."), format!("They belong to {owner}.")],
+        _ if everybody => owned(&["We share them.", "They are ours."]),
+        several => {
+            let Named { subject, object, .. } = Named::new(several, facts.speaker);
+            vec![format!("{subject} share them."), format!("They belong to {object}.")]
+        }
+    }
+}
+
 fn nobodys() -> Vec<String> {
     owned(&[
         "It belongs to a neighbour.",

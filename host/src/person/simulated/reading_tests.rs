@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use coin::dialogue::read_answer;
+use coin::dialogue::{as_of_one_thing, read_answer};
 use coin::roster::Roster;
 use coin_schemas::household::{Background, Owners, UsageType, UserName, Users};
 use rstest::rstest;
 
-use super::phrases::{Facts, answers};
+use super::phrases::{Facts, NOT_THE_SAME, answers, answers_for_all};
 
 const QUESTIONS: [&str; 7] = [
     "Whose is the pencil on the desk?",
@@ -65,9 +65,15 @@ fn every_wording_is_read_back_as_the_truth(#[case] people: &str) {
         let truth = roster.owner_set(&owners).unwrap();
         for speaker in users.keys().step_by(if users.len() < 4 { 1 } else { 3 }) {
             let answered_by = Some(roster.index_of(speaker.as_str()).unwrap());
-            let wordings = USAGE_TYPES.into_iter().flat_map(|usage_type| {
-                answers(&Facts { users: &users, owners: Some(&owners), usage_type, speaker: Some(speaker) })
-            });
+            let facts = |usage_type| Facts {
+                users: &users,
+                owners: Some(&owners),
+                usage_type,
+                speaker: Some(speaker),
+            };
+            let of_one = USAGE_TYPES.into_iter().flat_map(|usage_type| answers(&facts(usage_type)));
+            let of_all = answers_for_all(&facts(None)).into_iter().map(|answer| as_of_one_thing(&answer));
+            let wordings = of_one.chain(of_all);
             for answer in wordings.collect::<BTreeSet<String>>() {
                 for question in QUESTIONS {
                     checked += 1;
@@ -94,7 +100,9 @@ fn what_nobody_knows_is_read_as_open() {
     for speaker in users.keys() {
         let facts = Facts { users: &users, owners: None, usage_type: None, speaker: Some(speaker) };
         let answered_by = Some(roster.index_of(speaker.as_str()).unwrap());
-        for answer in answers(&facts) {
+        for answer in
+            answers(&facts).into_iter().chain(answers_for_all(&facts)).chain([NOT_THE_SAME.to_owned()])
+        {
             for question in QUESTIONS {
                 let reading = read_answer(&roster, question, &answer, answered_by);
                 assert!(reading.is_unresolved(), "{answer:?} to {question:?} is {reading:?}");
