@@ -12,8 +12,8 @@ use coin_schemas::calibration::Calibration;
 use coin_schemas::episode::{Episode, EpisodeObject, Truth};
 use coin_schemas::household::{ObjectId, Score, Source, UsageType};
 use coin_schemas::report::{
-    AdaptedThreshold, Cost, CurvePoint, Gate, MetricsReport, MetricsSummary, ObjectReport, Parameters,
-    Report, Scoring, Withheld,
+    AdaptedThreshold, Cost, CurvePoint, ExpectedWrong, Gate, MetricsReport, MetricsSummary, ObjectReport,
+    Parameters, Report, Scoring, Withheld,
 };
 use coin_schemas::tools::{DEFAULT_K, DEFAULT_WINDOW_DAYS};
 
@@ -65,6 +65,7 @@ pub fn build(outcome: &Outcome, circumstances: Circumstances<'_>) -> Result<Repo
             Thresholds::Uncalibrated => None,
         },
         adapted: adapted(&outcome.agent),
+        expected_wrong: Some(expected_wrong(&outcome.agent, episode)),
         objects,
         questions: outcome.questions.clone(),
         curve,
@@ -72,6 +73,21 @@ pub fn build(outcome: &Outcome, circumstances: Circumstances<'_>) -> Result<Repo
         cost,
         stopped: outcome.stopped,
     })
+}
+
+fn expected_wrong(agent: &Agent, episode: &Episode) -> ExpectedWrong {
+    let mut expected = ExpectedWrong { inferred: 0.0, answered: 0.0 };
+    for object in &episode.objects {
+        let state = agent.object(&object.id);
+        match state.and_then(ObjectState::trust) {
+            Some(trust) => expected.answered += 1.0 - trust,
+            None => {
+                let assessment = state.and_then(ObjectState::assessment);
+                expected.inferred += 1.0 - assessment.map_or(0.0, |assessment| assessment.confidence);
+            }
+        }
+    }
+    expected
 }
 
 fn adapted(agent: &Agent) -> Option<AdaptedThreshold> {

@@ -306,6 +306,8 @@ pub enum Guarantee {
     WrongDespiteErrors,
     /// The same with the adaptive gate, where every answer is right.
     WrongAdapted,
+    /// The same with the adaptive gate, where one answer in twenty is wrong.
+    WrongAdaptedDespiteErrors,
 }
 
 impl Guarantee {
@@ -313,7 +315,11 @@ impl Guarantee {
     pub fn is_loss(self) -> bool {
         match self {
             Self::AnyOwner | Self::AllOwners | Self::OwnerSet => false,
-            Self::SettledWrong | Self::WrongInTheEnd | Self::WrongDespiteErrors | Self::WrongAdapted => true,
+            Self::SettledWrong
+            | Self::WrongInTheEnd
+            | Self::WrongDespiteErrors
+            | Self::WrongAdapted
+            | Self::WrongAdaptedDespiteErrors => true,
         }
     }
 }

@@ -28,6 +28,10 @@ pub struct Report {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "AdaptedThreshold")]
     pub adapted: Option<AdaptedThreshold>,
+    /// How many things are expected to be wrong.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ExpectedWrong")]
+    pub expected_wrong: Option<ExpectedWrong>,
     /// Every thing, in the episode's order.
     pub objects: Vec<ObjectReport>,
     /// Every question, in the order asked.
@@ -42,6 +46,16 @@ pub struct Report {
     pub cost: Cost,
     /// Why it ended.
     pub stopped: Stopped,
+}
+
+/// How many things are expected to be wrong in the end, by the probabilities that the run goes by.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExpectedWrong {
+    /// Of those that nobody has answered about: Σ (1 − confidence).
+    pub inferred: f64,
+    /// Of the others, as one answer in twenty is wrong and what else is known speaks for or against it.
+    pub answered: f64,
 }
 
 /// What the answers made of the threshold of the adaptive gate.

@@ -81,7 +81,8 @@ impl Promises {
             Guarantee::SettledWrong
             | Guarantee::WrongInTheEnd
             | Guarantee::WrongDespiteErrors
-            | Guarantee::WrongAdapted => {
+            | Guarantee::WrongAdapted
+            | Guarantee::WrongAdaptedDespiteErrors => {
                 let (owners, confidence) = sample.distribution.best();
                 confidence >= self.all_owners.lambda && owners != sample.owners
             }
@@ -98,10 +99,11 @@ const AT_ONCE: [Guarantee; 4] =
     [Guarantee::AnyOwner, Guarantee::AllOwners, Guarantee::OwnerSet, Guarantee::SettledWrong];
 
 /// What is known when the questions were asked, and who asked them and who answered.
-const IN_THE_END: [(Guarantee, Gate, ErrorRate); 3] = [
+const IN_THE_END: [(Guarantee, Gate, ErrorRate); 4] = [
     (Guarantee::WrongInTheEnd, Gate::Risk, ErrorRate::NONE),
     (Guarantee::WrongDespiteErrors, Gate::Risk, ErrorRate::ONE_IN_TWENTY),
     (Guarantee::WrongAdapted, Gate::Adaptive, ErrorRate::NONE),
+    (Guarantee::WrongAdaptedDespiteErrors, Gate::Adaptive, ErrorRate::ONE_IN_TWENTY),
 ];
 
 /// Counts how often every guarantee held, for each kind of home.

@@ -252,6 +252,7 @@ fn coverage(coverage: &[Coverage]) -> Table {
         Guarantee::WrongInTheEnd => "wrong after the risk gate's questions (aimed at, not promised)",
         Guarantee::WrongDespiteErrors => "the same where one answer in twenty is wrong",
         Guarantee::WrongAdapted => "wrong after the adaptive gate's questions",
+        Guarantee::WrongAdaptedDespiteErrors => "the same where one answer in twenty is wrong",
     };
     Table {
         title: "How often the guarantees held".to_owned(),

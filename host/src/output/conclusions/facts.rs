@@ -1,6 +1,6 @@
 //! What a run took, why it ended, and what may be relied on.
 
-use coin_schemas::report::{ContextSource, Cost, Estimator, Gate, Report, Scoring, Stopped};
+use coin_schemas::report::{ContextSource, Cost, Estimator, ExpectedWrong, Gate, Report, Scoring, Stopped};
 use coin_server::display::{count, plain_text};
 
 use super::guarantee::guarantee;
@@ -11,6 +11,7 @@ pub(crate) fn facts(report: &Report) -> Vec<(&'static str, String)> {
     let cost = &report.cost;
     let mut rows = Vec::new();
     rows.extend(correct(report).map(|correct| ("correct", correct)));
+    rows.extend(report.expected_wrong.map(|wrong| ("expected", expected(wrong))));
     rows.extend([("questions", questions(report)), ("ended", ended(report)), ("effort", effort(cost))]);
     if cost.prompt_tokens + cost.completion_tokens > 0 {
         let sent = count(cost.prompt_tokens, "sent", "sent");
@@ -36,6 +37,16 @@ fn correct(report: &Report) -> Option<String> {
     let judged = report.objects.iter().filter(|object| object.truth.is_some()).count();
     let wrong = report.objects.iter().filter(|object| is_wrong(object)).count();
     (judged > 0).then(|| format!("{} of {}", judged - wrong, count(judged as u64, "owner set", "owner sets")))
+}
+
+/// What may be wrong by the run's own probabilities, so that neither doubt nor erring people go unsaid.
+fn expected(ExpectedWrong { inferred, answered }: ExpectedWrong) -> String {
+    match answered > 0.0 {
+        true => format!(
+            "{inferred:.1} inferred owner sets wrong, and {answered:.2} answered ones if one answer in twenty is"
+        ),
+        false => format!("{inferred:.1} inferred owner sets wrong"),
+    }
 }
 
 fn settings(report: &Report) -> String {

@@ -144,6 +144,7 @@ fn report() -> Report {
         },
         calibration: Some(calibration()),
         adapted: None,
+        expected_wrong: None,
         objects,
         questions: vec![
             question(1, "2", "Mary's — the others only borrow it.", AnswerStatus::Answered),

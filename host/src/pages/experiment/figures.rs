@@ -390,6 +390,7 @@ fn coverage(results: &ExperimentResults) -> Option<Figure> {
                 Guarantee::WrongInTheEnd => "right after the questions",
                 Guarantee::WrongDespiteErrors => "right though answers are wrong",
                 Guarantee::WrongAdapted => "right after the adaptive gate",
+                Guarantee::WrongAdaptedDespiteErrors => "the same though answers are wrong",
             };
             Interval {
                 name: format!("{name} ({}, {} homes)", row.protocol, row.households),
