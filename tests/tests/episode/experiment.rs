@@ -154,7 +154,7 @@ fn the_documented_worth_of_terms_is_what_the_command_measures() {
     assert!(made == kept, "curve-paper.svg is another; copy the figures anew");
     let kind = &results(&out)["kinds"][0];
     let questions = |place: usize| kind["terms"][place]["questions"]["mean"].as_f64().unwrap();
-    assert_eq!(kind["terms"].as_array().unwrap().len(), 7);
+    assert_eq!(kind["terms"].as_array().unwrap().len(), 8);
     println!("paper: {:.1} questions, {:.1} without looks", questions(0), questions(3));
     assert!(questions(0) <= 4.0 && questions(0) < questions(3));
 }
