@@ -17,6 +17,8 @@ pub struct Chronicle {
     narration: Narration,
     classes: BTreeMap<ObjectId, ClassLabel>,
     beliefs: BTreeMap<ObjectId, (Owners, f64)>,
+    /// Whom people named.
+    said: BTreeMap<ObjectId, Owners>,
     inferring: bool,
     /// An answer is told once the pass after it has shown what it changed.
     untold: Option<UntoldAnswer>,
@@ -29,6 +31,7 @@ struct UntoldAnswer {
     owners: Owners,
     status: AnswerStatus,
     before: Option<(Owners, f64)>,
+    said_before: Option<Owners>,
     changed: Vec<Changed>,
 }
 
@@ -40,6 +43,7 @@ impl Chronicle {
             narration,
             classes: BTreeMap::new(),
             beliefs: BTreeMap::new(),
+            said: BTreeMap::new(),
             inferring: false,
             untold: None,
         }
@@ -75,22 +79,26 @@ impl Chronicle {
                 self.narration.question_recalled(*step, question, answer);
             }
             LogEvent::AnswerRead { step, object_id, answer, answered_by, ownership, status, .. } => {
+                let named = ownership.iter().filter(|(_, owner)| **owner);
+                let owners: Owners = named.map(|(name, _)| name.clone()).collect();
+                let said_before = match status {
+                    AnswerStatus::Answered => self.said.insert(object_id.clone(), owners.clone()),
+                    AnswerStatus::Unresolved => None,
+                };
                 self.untold = Some(UntoldAnswer {
                     step: *step,
                     answer: answer.clone(),
                     answered_by: answered_by.clone(),
-                    owners: ownership
-                        .iter()
-                        .filter(|(_, owner)| **owner)
-                        .map(|(name, _)| name.clone())
-                        .collect(),
+                    owners,
+                    said_before,
                     status: *status,
                     before: self.beliefs.get(object_id).cloned(),
                     changed: Vec::new(),
                 });
             }
             LogEvent::QuestionDeclined { .. } => self.narration.declined(),
-            LogEvent::AnswerUndone { step, .. } => {
+            LogEvent::AnswerUndone { step, object_id } => {
+                self.said.remove(object_id);
                 self.untold = None;
                 self.narration.answer_undone(*step);
             }
@@ -130,6 +138,7 @@ impl Chronicle {
                     .before
                     .as_ref()
                     .map(|(owners, confidence)| Belief { owners, confidence: *confidence }),
+                said_before: untold.said_before.as_ref(),
                 changed: &untold.changed,
             });
         }

@@ -57,6 +57,8 @@ pub struct AnswerRead<'a> {
     pub status: AnswerStatus,
     /// What was believed before; `None` where the model had failed.
     pub before: Option<Belief<'a>>,
+    /// Whom an earlier answer named, where this one was to confirm it.
+    pub said_before: Option<&'a Owners>,
     /// The other things that the answer changed.
     pub changed: &'a [Changed],
 }
@@ -196,6 +198,13 @@ impl Narration {
         let thought = read.before.map(|belief| {
             (belief.owners, owners_in_words(belief.owners, &self.household), percent(belief.confidence))
         });
+        if let (AnswerStatus::Answered, Some(said)) = (read.status, read.said_before) {
+            let owners = owners_in_words(read.owners, &self.household);
+            return match said == read.owners {
+                true => format!("{owners}, as said before"),
+                false => format!("{owners} (said before: {})", owners_in_words(said, &self.household)),
+            };
+        }
         match (read.status, thought) {
             (AnswerStatus::Unresolved, _) => "leaves it open".to_owned(),
             (AnswerStatus::Answered, None) => owners_in_words(read.owners, &self.household),

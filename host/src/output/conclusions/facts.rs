@@ -41,11 +41,16 @@ fn correct(report: &Report) -> Option<String> {
 
 /// What may be wrong by the run's own probabilities, so that neither doubt nor erring people go unsaid.
 fn expected(ExpectedWrong { inferred, answered }: ExpectedWrong) -> String {
-    match answered > 0.0 {
-        true => format!(
-            "{inferred:.1} inferred owner sets wrong, and {answered:.2} answered ones if one answer in twenty is"
-        ),
-        false => format!("{inferred:.1} inferred owner sets wrong"),
+    /// What would be shown as none.
+    const NONE: f64 = 0.05;
+    match (inferred >= NONE, answered >= NONE) {
+        (_, true) => {
+            format!(
+                "{inferred:.1} inferred owner sets wrong, {answered:.1} answered ones if one answer in twenty is"
+            )
+        }
+        (true, false) => format!("{inferred:.1} inferred owner sets wrong"),
+        (false, false) => "hardly any owner set wrong".to_owned(),
     }
 }
 

@@ -63,6 +63,7 @@ fn tell_everything(narration: &mut Narration) {
     narration.inference_started(1, 5);
     narration.inference_finished();
     let read = AnswerRead {
+        said_before: None,
         step: 1,
         answer: "Mine.",
         answered_by: Some(&speaker),
