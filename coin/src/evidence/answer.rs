@@ -7,7 +7,7 @@ use crate::owners::{OwnerSet, OwnerSetDistribution};
 /// likely as the next to be named in the rest of them.
 const ABOUT_ONE_PERSON: f64 = 0.75;
 
-/// p(S | answer A) ∝ p(S)·p(A | S) in a household of so many members, where A is named with [`TRUST`] if it is right.
+/// p(S | answer A) ∝ p(S)·p(A | S) in a household of so many members, where A is named with a probability of .95 if it is right.
 /// Unchanged where A is none of the sets, as where somebody outside the household owns the thing.
 pub fn after_answer(belief: &OwnerSetDistribution, named: OwnerSet, members: usize) -> OwnerSetDistribution {
     let entries = belief.entries();
