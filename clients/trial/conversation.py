@@ -126,7 +126,7 @@ def main() -> int:
     arguments.add_argument("--check", action="store_true", help="compare with the file instead of writing it")
     given = arguments.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        text = asyncio.run(held(homes.two_days_in(Path(folder))))
+        text = asyncio.run(held(homes.a_day_in(Path(folder))))
     if not given.check:
         DOCUMENT.write_text(text)
         return 0

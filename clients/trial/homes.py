@@ -14,7 +14,7 @@ from trial.places import SMALL_HOUSE, program
 # More than a page of the list of resources holds.
 CROWD = 230
 
-TWO_DAYS_IN = "2025-01-15T00:00:00"
+A_DAY_IN = "2025-01-14T00:00:00"
 
 
 def imported(episode: Path, database: Path) -> Path:
@@ -29,12 +29,12 @@ def small_house(folder: Path) -> Path:
     return imported(SMALL_HOUSE, folder / f"small-house-{len(list(folder.iterdir()))}.db")
 
 
-def two_days_in(folder: Path) -> Path:
-    """The same home as it was two days into the week, when some things were still worth a question."""
-    episode = json.loads((SMALL_HOUSE / "episode.json").read_text()) | {"now": TWO_DAYS_IN}
+def a_day_in(folder: Path) -> Path:
+    """The same home as it was a day into the week, when some things were still worth a question."""
+    episode = json.loads((SMALL_HOUSE / "episode.json").read_text()) | {"now": A_DAY_IN}
     del episode["train_until"], episode["truth"]
-    seen = [line for line in captions_of(episode) if as_time(json.loads(line)["caption"]) < TWO_DAYS_IN]
-    early = folder / f"two-days-in-{len(list(folder.iterdir()))}"
+    seen = [line for line in captions_of(episode) if as_time(json.loads(line)["caption"]) < A_DAY_IN]
+    early = folder / f"a-day-in-{len(list(folder.iterdir()))}"
     early.mkdir()
     (early / "episode.json").write_text(json.dumps(episode))
     (early / episode["captions"]).write_text("\n".join(seen))

@@ -79,7 +79,7 @@ async def try_everything(connect: Connect) -> list[Column]:
         for (transport, reach), era in product(reaches.items(), Era):
             column = Column(f"{transport} {era.version}")
             columns.append(column)
-            work = try_era(column, connect, reach(homes.two_days_in(folder)), reach(crowd), era)
+            work = try_era(column, connect, reach(homes.a_day_in(folder)), reach(crowd), era)
             attempts.append(column.attempt(CONNECTION, work))
         await asyncio.gather(*attempts)
     return columns
