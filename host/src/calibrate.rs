@@ -349,7 +349,7 @@ async fn score_loaded(
         share: ShareThresholds::default(),
         max_questions: 0,
         reinference: Reinference::AnsweredContext,
-        choice: QuestionChoice::default(),
+        choice: QuestionChoice::LeastSure,
         answers_per_pass: 1,
     };
     let course = Course::new(agent_settings, how.withheld.clone(), how.scoring, how.concurrency)

@@ -101,9 +101,9 @@ pub struct RunArguments {
     /// Which rule decides what is asked
     #[arg(long, value_enum, default_value_t = GateArgument::Risk)]
     pub gate: GateArgument,
-    /// Which share of the things the adaptive gate may leave wrong
-    #[arg(long, value_name = "LEVEL", default_value = DEFAULT_RISK, value_parser = level)]
-    pub risk: Level,
+    /// Which share of the things the adaptive gate may leave wrong [default: 0.012]
+    #[arg(long, value_name = "LEVEL", value_parser = level)]
+    pub risk: Option<Level>,
     /// Thresholds of the model, from `host calibrate` [default: those that come with the embedded model]
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
@@ -126,8 +126,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Let the simulated person be wrong in this share of the answers
-    #[arg(long, value_name = "SHARE", default_value = "0")]
-    pub wrong_answers: ErrorRate,
+    #[arg(long, value_name = "SHARE")]
+    pub wrong_answers: Option<ErrorRate>,
     /// Write the report to this file (JSON)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
@@ -143,6 +143,23 @@ pub struct RunArguments {
     /// Say nothing while working
     #[arg(long)]
     pub quiet: bool,
+}
+
+impl RunArguments {
+    /// # Errors
+    /// If something is said of a gate or of people that are not there; the text says what goes together.
+    pub fn check(&self) -> Result<(), String> {
+        if self.risk.is_some() && self.gate != GateArgument::Adaptive {
+            return Err("--risk is what the adaptive gate aims at; add --gate adaptive or leave it out (other gates go by \
+                        their calibration: host calibrate --risk)"
+                .to_owned());
+        }
+        if self.wrong_answers.is_some() && self.answers != Answers::Simulated {
+            return Err("--wrong-answers is about simulated people; leave it out or add --answers simulated"
+                .to_owned());
+        }
+        Ok(())
+    }
 }
 
 /// Arguments of `host calibrate`.

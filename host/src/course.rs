@@ -31,7 +31,6 @@ pub(crate) struct Course {
     withheld: BTreeSet<Withheld>,
     scoring: Scoring,
     parameters: EvidenceParameters,
-    choice: QuestionChoice,
     concurrency: usize,
     journal: Journal,
     /// The answers from before the run; those that the server knows, where nothing is said.
@@ -48,28 +47,13 @@ impl Course {
         concurrency: usize,
     ) -> Self {
         let (journal, stop) = (Journal::none(), CancellationToken::new());
-        let (parameters, choice) = (EvidenceParameters::default(), QuestionChoice::MostInformative);
-        Self {
-            settings,
-            withheld,
-            scoring,
-            parameters,
-            choice,
-            concurrency,
-            journal,
-            answered_before: None,
-            stop,
-        }
+        let parameters = EvidenceParameters::default();
+        Self { settings, withheld, scoring, parameters, concurrency, journal, answered_before: None, stop }
     }
 
     /// With other terms of the evidence model than the usual ones.
     pub(crate) fn with_parameters(self, parameters: EvidenceParameters) -> Self {
         Self { parameters, ..self }
-    }
-
-    /// With another way to choose questions, where every one could be weighed.
-    pub(crate) fn choosing(self, choice: QuestionChoice) -> Self {
-        Self { choice, ..self }
     }
 
     pub(crate) fn until(self, stop: CancellationToken) -> Self {
@@ -119,8 +103,7 @@ pub(crate) async fn drive(
             answered.remove(object);
         }
     }
-    let Course { mut settings, withheld, scoring, parameters, choice, concurrency, journal, stop, .. } =
-        course;
+    let Course { mut settings, withheld, scoring, parameters, concurrency, journal, stop, .. } = course;
     let reinference = settings.reinference;
     // The evidence of one thing bears on every other one, and to weigh it again costs nothing.
     if scoring.estimator != Estimator::Model {
@@ -128,11 +111,9 @@ pub(crate) async fn drive(
         settings.answers_per_pass = home.things.len().div_ceil(THINGS_PER_ANSWER).max(1);
     }
     // What an answer would change can be told before it is given, where no model is asked, and in a home that is judged soon.
-    if scoring.estimator == Estimator::Evidence
-        && settings.answers_per_pass == 1
-        && goes_by_doubt(settings.gate)
-    {
-        settings.choice = choice;
+    let may_weigh = scoring.estimator == Estimator::Evidence && settings.answers_per_pass == 1;
+    if !(may_weigh && goes_by_doubt(settings.gate)) {
+        settings.choice = QuestionChoice::LeastSure;
     }
     let alike = if asks_together(settings.gate, person.kind()) { home.alike() } else { Vec::new() };
     let mut agent = Agent::new(settings, home.things.keys().cloned()).asking_together(alike);

@@ -16,7 +16,7 @@ use coin::owners::{DistributionError, OwnerSetDistribution};
 use coin::roster::{Roster, RosterError};
 use coin_schemas::household::ObjectId;
 use coin_schemas::journal::{JOURNAL_VERSION, JournalEntry, JournalHeading};
-use coin_schemas::report::{QuestionReport, ScoreParts};
+use coin_schemas::report::{AnswerStatus, QuestionReport, ScoreParts};
 use thiserror::Error;
 
 /// What is added to the name of the database.
@@ -211,12 +211,13 @@ impl Journal {
         self.past.front_mut()?.inferred.remove(object)
     }
 
-    /// How an earlier part of the run fared with its next question, if that was about this thing. The pass is over then.
-    pub fn past_question(&mut self, object: &ObjectId) -> Option<PastQuestion> {
+    /// How an earlier part of the run fared with its next question, if that was about this thing and these others. The pass is
+    /// over then.
+    pub fn past_question(&mut self, object: &ObjectId, also: &[ObjectId]) -> Option<PastQuestion> {
         let question = self.past.pop_front()?.question?;
         let (PastQuestion::Answered { question: report, .. } | PastQuestion::Declined { question: report }) =
             &question;
-        if report.object_id == *object {
+        if report.object_id == *object && report.also == also {
             return Some(question);
         }
         // Something has changed since, such as an answer that came another way; the rest fits no more.
@@ -353,10 +354,13 @@ fn read_past(
             JournalEntry::Undone => {
                 passes.pop_back();
                 let question = passes.back_mut().and_then(|pass| pass.question.take());
-                withdrawn = match question {
-                    Some(PastQuestion::Answered { question, .. }) => question.objects().cloned().collect(),
-                    Some(PastQuestion::Declined { .. }) | None => Vec::new(),
-                };
+                if let Some(PastQuestion::Answered { question, .. }) = question {
+                    withdrawn = question
+                        .objects()
+                        .filter(|object| !stands_again(&mut passes, object))
+                        .cloned()
+                        .collect();
+                }
             }
         }
     }
@@ -367,6 +371,20 @@ fn read_past(
         }
     }
     Ok((passes, withdrawn))
+}
+
+/// Whether an earlier answer about a thing stands again, now that what was to confirm it was taken back. The database may not
+/// know it any more.
+fn stands_again(passes: &mut VecDeque<Pass>, object: &ObjectId) -> bool {
+    let earlier = passes.iter_mut().rev().find_map(|pass| match &mut pass.question {
+        Some(PastQuestion::Answered { question, recorded, .. })
+            if question.status == AnswerStatus::Answered && question.is_about(object) =>
+        {
+            Some(recorded)
+        }
+        _ => None,
+    });
+    earlier.map(|recorded| *recorded = Recorded::Perhaps).is_some()
 }
 
 /// What keeps a run from going on with other settings; `None` where nothing does.

@@ -21,7 +21,7 @@ use coin_host::model::choice::{self, ModelSettings};
 use coin_host::observer::Chronicle;
 use coin_host::output::{EventLog, Printer, Progress, ResultFormat};
 use coin_host::pages::episode::{EpisodePage, episode as page};
-use coin_host::person::{Answers, PersonKind};
+use coin_host::person::{Answers, ErrorRate, PersonKind};
 use coin_host::run::{EvidenceKept, ForeignCalibration, RunSettings, run_episode};
 use coin_schemas::report::Stopped;
 use coin_schemas::tools::FindDecision;
@@ -143,6 +143,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let episode = arguments.episode.clone().ok_or_else(|| {
         Failure::Refused("no episode is given; name its folder with --episode DIR".to_owned())
     })?;
+    arguments.check().map_err(Failure::Refused)?;
     let calibration = match &arguments.calibration {
         Some(file) => Some(read_calibration(file).map_err(|error| failure(true, &error))?),
         None => None,
@@ -161,12 +162,12 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
         db: arguments.db.clone(),
         server: arguments.server.clone(),
         gate: arguments.gate.into(),
-        risk: arguments.risk,
+        risk: arguments.risk.unwrap_or(default_levels().risk),
         calibration,
         answers: arguments.answers.clone(),
         max_questions: arguments.max_questions,
         seed: arguments.seed,
-        wrong_answers: arguments.wrong_answers,
+        wrong_answers: arguments.wrong_answers.unwrap_or(ErrorRate::NONE),
         reinference: arguments.reinference.into(),
         withheld: arguments.without.iter().copied().map(Into::into).collect(),
         foreign_calibration: match arguments.force_calibration {

@@ -18,7 +18,7 @@ pub struct Chronicle {
     classes: BTreeMap<ObjectId, ClassLabel>,
     beliefs: BTreeMap<ObjectId, (Owners, f64)>,
     /// Whom people named.
-    said: BTreeMap<ObjectId, Owners>,
+    said: BTreeMap<ObjectId, Vec<Owners>>,
     inferring: bool,
     /// An answer is told once the pass after it has shown what it changed.
     untold: Option<UntoldAnswer>,
@@ -82,7 +82,11 @@ impl Chronicle {
                 let named = ownership.iter().filter(|(_, owner)| **owner);
                 let owners: Owners = named.map(|(name, _)| name.clone()).collect();
                 let said_before = match status {
-                    AnswerStatus::Answered => self.said.insert(object_id.clone(), owners.clone()),
+                    AnswerStatus::Answered => {
+                        let said = self.said.entry(object_id.clone()).or_default();
+                        said.push(owners.clone());
+                        said.iter().nth_back(1).cloned()
+                    }
                     AnswerStatus::Unresolved => None,
                 };
                 self.untold = Some(UntoldAnswer {
@@ -98,7 +102,7 @@ impl Chronicle {
             }
             LogEvent::QuestionDeclined { .. } => self.narration.declined(),
             LogEvent::AnswerUndone { step, object_id } => {
-                self.said.remove(object_id);
+                self.said.entry(object_id.clone()).or_default().pop();
                 self.untold = None;
                 self.narration.answer_undone(*step);
             }

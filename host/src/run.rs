@@ -208,7 +208,7 @@ pub async fn run_episode(
         share: ShareThresholds::default(),
         max_questions: settings.max_questions.unwrap_or(home.things.len()),
         reinference: settings.reinference,
-        choice: QuestionChoice::default(),
+        choice: QuestionChoice::MostInformative,
         answers_per_pass: 1,
     };
     let parameters = Parameters {

@@ -32,10 +32,9 @@ use crate::sharing::ShareThresholds;
 pub const KNOWN_CONFIDENCE: f64 = 0.9;
 
 /// Of several things that are worth a question, which one is asked about.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QuestionChoice {
     /// The one that the gate puts first, as the paper has it.
-    #[default]
     LeastSure,
     /// The one whose answer leaves least doubt about everything, of the few that the gate puts first.
     MostInformative,

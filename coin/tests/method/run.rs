@@ -27,7 +27,7 @@ pub(crate) fn the_papers() -> AgentSettings {
         share: ShareThresholds::default(),
         max_questions: usize::MAX,
         reinference: Reinference::EveryUnasked,
-        choice: QuestionChoice::default(),
+        choice: QuestionChoice::LeastSure,
         answers_per_pass: 1,
     }
 }

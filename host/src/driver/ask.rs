@@ -34,7 +34,7 @@ impl Run<'_> {
         mut object: ObjectId,
         mut also: Vec<ObjectId>,
     ) -> Result<Event, DriveError> {
-        if let Some(event) = self.past_question(&object).await? {
+        if let Some(event) = self.past_question(&object, &also).await? {
             return Ok(event);
         }
         loop {
@@ -74,8 +74,12 @@ impl Run<'_> {
     }
 
     /// The question as an earlier part of the run put it, with what became of it.
-    async fn past_question(&mut self, object: &ObjectId) -> Result<Option<Event>, DriveError> {
-        let Some(past) = self.driver.journal.past_question(object) else { return Ok(None) };
+    async fn past_question(
+        &mut self,
+        object: &ObjectId,
+        also: &[ObjectId],
+    ) -> Result<Option<Event>, DriveError> {
+        let Some(past) = self.driver.journal.past_question(object, also) else { return Ok(None) };
         let (PastQuestion::Answered { question, .. } | PastQuestion::Declined { question }) = &past;
         self.driver.observer.observe(&LogEvent::QuestionRecalled {
             step: question.step,
@@ -139,6 +143,13 @@ impl Run<'_> {
             for object in question.objects() {
                 let arguments = RetractAnswer { object_id: object.to_string() };
                 let _: RetractAnswerResult = self.driver.server.call("retract_answer", &arguments).await?;
+                // What it was to confirm stands again.
+                let told = |earlier: &&QuestionReport| {
+                    earlier.status == AnswerStatus::Answered && earlier.is_about(object)
+                };
+                if let Some(earlier) = self.questions.iter().rev().find(told) {
+                    self.driver.record_answer_about(object, earlier, false).await?;
+                }
             }
         }
         // What was inferred since rests on the answer.
@@ -270,22 +281,28 @@ impl Driver<'_> {
         owner_outside_household: bool,
     ) -> Result<(), DriveError> {
         for object in question.objects() {
-            let arguments = RecordAnswer {
-                object_id: object.to_string(),
-                question: question.question.clone(),
-                answer: question.answer.clone(),
-                ownership: question
-                    .ownership
-                    .iter()
-                    .map(|(name, &owner)| (name.to_string(), owner))
-                    .collect(),
-                owner_outside_household,
-                answered_by: question.answered_by.as_ref().map(UserName::to_string),
-                as_of: Some(self.as_of.to_string()),
-            };
-            let recorded: RecordAnswerResult = self.server.call("record_answer", &arguments).await?;
-            debug_assert_eq!(recorded.status, question.status);
+            self.record_answer_about(object, question, owner_outside_household).await?;
         }
+        Ok(())
+    }
+
+    async fn record_answer_about(
+        &mut self,
+        object: &ObjectId,
+        question: &QuestionReport,
+        owner_outside_household: bool,
+    ) -> Result<(), DriveError> {
+        let arguments = RecordAnswer {
+            object_id: object.to_string(),
+            question: question.question.clone(),
+            answer: question.answer.clone(),
+            ownership: question.ownership.iter().map(|(name, &owner)| (name.to_string(), owner)).collect(),
+            owner_outside_household,
+            answered_by: question.answered_by.as_ref().map(UserName::to_string),
+            as_of: Some(self.as_of.to_string()),
+        };
+        let recorded: RecordAnswerResult = self.server.call("record_answer", &arguments).await?;
+        debug_assert_eq!(recorded.status, question.status);
         Ok(())
     }
 

@@ -201,12 +201,11 @@ impl Trial<'_> {
                 share: ShareThresholds::default(),
                 max_questions: home.loaded.episode.objects.len(),
                 reinference: Reinference::AnsweredContext,
-                choice: QuestionChoice::default(),
+                choice: variant.choice,
                 answers_per_pass: 1,
             };
             let course = Course::new(settings, BTreeSet::new(), scoring, concurrency)
-                .with_parameters(variant.parameters)
-                .choosing(variant.choice);
+                .with_parameters(variant.parameters);
             async move {
                 let outcome = methods::carried_out(&home, model.as_ref(), course, home.person(seed)).await;
                 scored(outcome, &home)

@@ -161,7 +161,7 @@ async fn agent(
         share: ShareThresholds::default(),
         max_questions: judged.loaded.episode.objects.len(),
         reinference: variant.reinference,
-        choice: QuestionChoice::default(),
+        choice: QuestionChoice::MostInformative,
         answers_per_pass: 1,
     };
     let course = Course::new(settings, kind.withheld, kind.scoring, concurrency);

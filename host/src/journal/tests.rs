@@ -88,9 +88,9 @@ fn a_run_is_told_again_pass_by_pass() {
         recorded: Recorded::Surely,
         owner_outside_household: false,
     };
-    assert_eq!(journal.past_question(&thing("1")), Some(answered));
+    assert_eq!(journal.past_question(&thing("1"), &[]), Some(answered));
     assert_eq!(journal.past_inference(&thing("2")), Some(inference([0.3, 0.1, 0.2])));
-    assert_eq!(journal.past_question(&thing("2")), None);
+    assert_eq!(journal.past_question(&thing("2"), &[]), None);
 }
 
 /// Between the journal and the database a run may end.
@@ -98,7 +98,7 @@ fn a_run_is_told_again_pass_by_pass() {
 fn an_answer_that_comes_last_may_not_have_been_recorded() {
     let folder = TempDir::new().unwrap();
     begin(&db(&folder)).answered(&question("1"), false).unwrap();
-    let past = go_on(&db(&folder)).unwrap().past_question(&thing("1"));
+    let past = go_on(&db(&folder)).unwrap().past_question(&thing("1"), &[]);
     assert!(matches!(past, Some(PastQuestion::Answered { recorded: Recorded::Perhaps, .. })), "{past:?}");
 }
 
@@ -115,7 +115,7 @@ fn what_was_taken_back_is_not_told_again() {
     assert_eq!(journal.withdrawn(), [thing("1")], "the database may still know the answer");
     assert!(journal.past_inference(&thing("1")).is_some());
     assert_eq!(journal.past_inference(&thing("2")), None);
-    assert_eq!(journal.past_question(&thing("1")), None);
+    assert_eq!(journal.past_question(&thing("1"), &[]), None);
     journal.answered(&question("1"), false).unwrap();
     drop(journal);
     assert_eq!(go_on(&db(&folder)).unwrap().withdrawn(), [], "it was answered anew");
@@ -191,4 +191,27 @@ proptest! {
         drop(journal);
         prop_assert_eq!(go_on(&db(&folder)).unwrap().past_inference(&thing("1")), Some(given));
     }
+}
+
+/// What was to confirm an answer was taken back: the answer stands again, and may have to be recorded again.
+#[test]
+fn a_confirmation_that_was_taken_back_leaves_the_answer() {
+    let folder = TempDir::new().unwrap();
+    let mut journal = begin(&db(&folder));
+    journal.answered(&question("1"), false).unwrap();
+    journal.answered(&question("1"), false).unwrap();
+    journal.undone().unwrap();
+    drop(journal);
+    let mut journal = go_on(&db(&folder)).unwrap();
+    assert_eq!(journal.withdrawn(), []);
+    let past = journal.past_question(&thing("1"), &[]);
+    assert!(matches!(past, Some(PastQuestion::Answered { recorded: Recorded::Perhaps, .. })), "{past:?}");
+    assert_eq!(journal.past_question(&thing("1"), &[]), None);
+}
+
+#[test]
+fn a_question_about_other_things_as_well_is_another() {
+    let folder = TempDir::new().unwrap();
+    begin(&db(&folder)).answered(&question("1"), false).unwrap();
+    assert_eq!(go_on(&db(&folder)).unwrap().past_question(&thing("1"), &[thing("2")]), None);
 }

@@ -13,6 +13,12 @@ use serde_json::{Value, json};
 #[case::unknown_model(&["--episode", "x", "--model", "oracle"], &["oracle", "embedded"])]
 #[case::a_negative_number(&["--episode", "x", "--max-questions=-1"], &["--max-questions", "-1"])]
 #[case::a_number_in_words(&["--episode", "x", "--seed", "seven"], &["--seed", "seven"])]
+#[case::a_risk_of_no_gate(&["--episode", "x", "--risk", "0.01"], &["--risk", "--gate adaptive"])]
+#[case::a_share_above_one(&["--episode", "x", "--wrong-answers", "5"], &["--wrong-answers", "5", "0.05"])]
+#[case::errors_of_real_people(
+    &["--episode", "x", "--wrong-answers", "0.05", "--answers", "terminal"],
+    &["--wrong-answers", "simulated"]
+)]
 #[case::no_value(&["--episode"], &["--episode"])]
 #[case::no_server(&["--episode", "x", "--server", ""], &["--server"])]
 #[case::an_unclosed_quote(&["--episode", "x", "--server", "coin-server --db 'x"], &["--server"])]

@@ -96,3 +96,24 @@ fn a_run_that_goes_on_does_not_ask_them_again() {
     let anew = super::report(folder.path(), &with_db);
     assert_eq!(super::questions(&anew).len(), 0, "the database knows all four answers");
 }
+
+/// Whose a thing is was said twice, and the second time taken back: the first answer is in the database again.
+#[test]
+fn a_confirmation_that_is_taken_back_leaves_the_answer() {
+    let folder = study("Mary").write();
+    let db = folder.join("home.db");
+    // Not all together: two are Tom's, two are Mary's. The first of hers turns out to be Tom's, which is taken back where the
+    // second is to be confirmed, and that ends it.
+    let typed = "They are not all the same people's\nTom\nTom\nMary\nMary\nTom\nundo\nstop\n";
+    let finished =
+        super::host(folder.path(), &["--answers", "terminal", "--db", db.to_str().unwrap(), "--json"])
+            .input(typed)
+            .run()
+            .expect_code(0);
+    assert!(finished.stderr.contains("is taken back"), "{}", finished.stderr);
+    let anew = super::report(folder.path(), &["--db", db.to_str().unwrap(), "--gate", "never"]);
+    let pencils = anew["objects"].as_array().unwrap().iter().filter(|object| object["class"] == "pencil");
+    let answered: Vec<&Value> = pencils.filter(|object| object["source"] == "answer").collect();
+    assert_eq!(answered.len(), 4, "{answered:#?}");
+    assert_eq!(answered.iter().filter(|object| object["owners"] == json!(["Mary"])).count(), 2);
+}
