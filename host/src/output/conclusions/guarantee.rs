@@ -88,7 +88,7 @@ fn adaptive(calibration: &Calibration, report: &Report) -> String {
     match adapted.lambda {
         Some(lambda) => format!(
             "things at least {} sure are settled without a question; {seen}, and by that at most {target} of all \
-             things are expected to be wrong in the end, which this home has shown and no other promises",
+             things are expected to be wrong in the end, an estimate for this home and no promise over homes",
             percent(lambda)
         ),
         None => {
