@@ -238,10 +238,24 @@ impl OwnerSetDistribution {
 
     /// The possible sets by name, most probable first. Sets of probability 0 are left out.
     pub fn to_named(&self, roster: &Roster) -> Vec<OwnerSetProbability> {
+        self.named_where(roster, |probability| probability > 0.0)
+    }
+
+    /// The best set and all of at least this probability by name, most probable first. They sum to 1, as if the others
+    /// were impossible.
+    pub fn likely(&self, roster: &Roster, least: f64) -> Vec<OwnerSetProbability> {
+        let least = least.min(self.best().1);
+        let mut likely = self.named_where(roster, |probability| probability >= least);
+        let sum = likely.iter().fold(0.0, |sum, set| sum + set.probability);
+        likely.iter_mut().for_each(|set| set.probability /= sum);
+        likely
+    }
+
+    fn named_where(&self, roster: &Roster, counts: impl Fn(f64) -> bool) -> Vec<OwnerSetProbability> {
         let mut named: Vec<OwnerSetProbability> = self
             .entries
             .iter()
-            .filter(|&&(_, probability)| probability > 0.0)
+            .filter(|&&(_, probability)| counts(probability))
             .map(|&(set, probability)| OwnerSetProbability { owners: roster.owners(set), probability })
             .collect();
         named.sort_by(|left, right| right.probability.total_cmp(&left.probability));

@@ -308,6 +308,20 @@ mod by_name {
         assert_eq!(taken.to_named(&roster), named(&[("Bob", 1.0)]));
     }
 
+    /// What is left out is as impossible to whoever takes the rest: it is a distribution again.
+    #[test]
+    fn the_likely_sets_are_a_distribution_of_their_own() {
+        let roster = roster(&["Ann", "Bob"]);
+        let weights = [(set(&[0]), 0.75), (set(&[1]), 0.05), (set(&[0, 1]), 0.20)];
+        let taken = OwnerSetDistribution::from_weights(weights.to_vec());
+        let likely = taken.likely(&roster, 0.1);
+        assert_eq!(likely.iter().map(|set| set.owners.len()).collect::<Vec<_>>(), [1, 2]);
+        assert!((likely[0].probability - 0.75 / 0.95).abs() < EXACT);
+        assert!(OwnerSetDistribution::from_named(&roster, &likely).is_ok());
+        // Where nothing is likely the best is the least that can be told.
+        assert_eq!(taken.likely(&roster, 0.9), named(&[("Ann", 1.0)]));
+    }
+
     #[test]
     fn a_large_household_may_name_a_set_beyond_the_candidates() {
         let roster = roster_of(9);

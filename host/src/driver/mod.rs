@@ -7,11 +7,11 @@ mod infer;
 use std::collections::{BTreeMap, BTreeSet};
 
 use coin::agent::{Agent, Effect, Event, ObjectState, UnexpectedEvent};
-use coin::owners::{OwnerSet, OwnerSetDistribution};
+use coin::owners::OwnerSet;
 use coin::roster::Roster;
 use coin_schemas::events::LogEvent;
 use coin_schemas::household::{ObjectId, Source};
-use coin_schemas::model::{OwnerSetProbability, TaskObject};
+use coin_schemas::model::TaskObject;
 use coin_schemas::report::{Estimator, QuestionReport, Stopped};
 use coin_schemas::tools::{RecordScores, RecordScoresResult};
 use futures::{StreamExt, TryStreamExt};
@@ -27,8 +27,8 @@ use crate::output::EventLogError;
 use crate::person::{Person, PersonError};
 use crate::steps::{StepError, Steps};
 
-/// Owner sets that are less probable are not stored. All of them together are less than a server takes for rounding.
-const WORTH_STORING: f64 = 1e-9;
+/// Owner sets that are less probable are not stored. A household of eight has 255, nearly all of them next to impossible.
+const WORTH_STORING: f64 = 1e-6;
 
 /// How many beliefs are on their way to the server at once.
 const STORED_AT_ONCE: usize = 16;
@@ -248,14 +248,6 @@ impl Run<'_> {
     }
 }
 
-/// The owner sets that are worth storing, most probable first. A household of eight has 255, most of them next to
-/// impossible.
-fn likely_sets(distribution: &OwnerSetDistribution, roster: &Roster) -> Vec<OwnerSetProbability> {
-    let mut sets = distribution.to_named(roster);
-    sets.retain(|set| set.probability >= WORTH_STORING);
-    sets
-}
-
 impl Driver<'_> {
     /// Whether scores are made without a model that is paid for.
     fn is_free(&self) -> bool {
@@ -284,7 +276,7 @@ impl Driver<'_> {
             Some(RecordScores {
                 object_id: object.to_string(),
                 scores: scores.map(|(name, score)| (name.to_string(), score.value())).collect(),
-                owner_sets: Some(likely_sets(distribution, self.roster)),
+                owner_sets: Some(distribution.likely(self.roster, WORTH_STORING)),
                 model: Some(self.model.to_owned()),
             })
         });
