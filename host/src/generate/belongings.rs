@@ -80,7 +80,7 @@ pub(super) fn assign(
         Structure::Paper => {
             PAPER_SLOTS.iter().flat_map(|&(count, slot)| std::iter::repeat_n(slot, count)).collect()
         }
-        Structure::Drawn => draw_slots(things.len(), people.len(), &parameters.owner_set_sizes, generator),
+        Structure::Drawn => draw_slots(things.len(), people.len(), parameters, generator),
     };
     let mut belongings: Vec<Belonging> = Vec::with_capacity(things.len());
     for (thing, slot) in by_commonness(things, role_fit, generator).into_iter().zip(slots) {
@@ -151,7 +151,7 @@ fn by_commonness(
 fn draw_slots(
     things: usize,
     people: usize,
-    owner_set_sizes: &OwnerSetSizes,
+    parameters: &RoutineParameters,
     generator: &mut ChaCha8Rng,
 ) -> Vec<Slot> {
     const USAGE_TYPES: [(UsageType, f64); 3] = [
@@ -159,6 +159,7 @@ fn draw_slots(
         (UsageType::TemporarySharing, 15.0),
         (UsageType::MultiUserSharing, 9.0),
     ];
+    let owner_set_sizes = OwnerSetSizes::at(between(&parameters.sharing_in_groups, generator));
     let of_this_home = USAGE_TYPES.map(|(_, weight)| weight * generator.random_range(0.6..1.4));
     let mut slots: Vec<Slot> = (0..things)
         .map(|_| {

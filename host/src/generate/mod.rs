@@ -40,7 +40,7 @@ use coin_schemas::tools::display_name;
 
 pub use arguments::{GenerateArguments, HomerArguments, HomesArguments, run, run_homer};
 pub use features::Feature;
-pub use parameters::{FirstDay, OwnerSetSizes, PeopleTemplate, Protocol, RoutineParameters, Structure};
+pub use parameters::{FirstDay, PeopleTemplate, Protocol, RoutineParameters, Structure};
 pub use write::{WriteError, write};
 
 use belongings::Belonging;

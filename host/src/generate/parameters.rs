@@ -92,13 +92,13 @@ impl Protocol {
             },
             Self::Office => RoutineParameters {
                 people: PeopleTemplate::Office { people: 5 },
-                owner_set_sizes: OwnerSetSizes::OF_MANY,
+                sharing_in_groups: 0.0..1.0,
                 busyness: 0.6..1.2,
                 ..week
             },
             Self::OtherHomes => RoutineParameters {
                 people: PeopleTemplate::CoupleOrFlat { most: 8 },
-                owner_set_sizes: OwnerSetSizes::OF_MANY,
+                sharing_in_groups: 1.0..1.0,
                 ..week
             },
             Self::Mistaken => RoutineParameters { mistaken: 0.08, ..week },
@@ -106,7 +106,7 @@ impl Protocol {
             Self::Couple => RoutineParameters { people: PeopleTemplate::Couple, ..week },
             Self::SharedHouse => RoutineParameters {
                 people: PeopleTemplate::Flat { most: 8 },
-                owner_set_sizes: OwnerSetSizes::OF_MANY,
+                sharing_in_groups: 1.0..1.0,
                 ..week
             },
         }
@@ -152,11 +152,11 @@ pub enum Structure {
 /// How many owners things have that are not single users': the shares of one owner, of some (two to all but one)
 /// and of everybody.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OwnerSetSizes {
+pub(super) struct OwnerSetSizes {
     /// Of what is temporarily shared.
-    pub temporary_sharing: [f64; 3],
+    pub(super) temporary_sharing: [f64; 3],
     /// Of what several people use.
-    pub multi_user_sharing: [f64; 3],
+    pub(super) multi_user_sharing: [f64; 3],
 }
 
 impl OwnerSetSizes {
@@ -166,6 +166,20 @@ impl OwnerSetSizes {
     /// Where more people live, things belong to some of them more often.
     const OF_MANY: Self =
         Self { temporary_sharing: [0.55, 0.30, 0.15], multi_user_sharing: [0.10, 0.50, 0.40] };
+
+    /// So far from the paper's proportions to those of many people, 0 to 1.
+    pub(super) fn at(sharing_in_groups: f64) -> Self {
+        let between = |paper: [f64; 3], many: [f64; 3]| {
+            std::array::from_fn(|size| {
+                paper[size] * (1.0 - sharing_in_groups) + many[size] * sharing_in_groups
+            })
+        };
+        let (paper, many) = (Self::OF_THE_PAPER, Self::OF_MANY);
+        Self {
+            temporary_sharing: between(paper.temporary_sharing, many.temporary_sharing),
+            multi_user_sharing: between(paper.multi_user_sharing, many.multi_user_sharing),
+        }
+    }
 }
 
 /// The first day of the history.
@@ -192,8 +206,9 @@ pub struct RoutineParameters {
     pub people: PeopleTemplate,
     /// How usage types and owner sets come about.
     pub structure: Structure,
-    /// How many owners things have, where that is drawn.
-    pub owner_set_sizes: OwnerSetSizes,
+    /// How far things that several people use are some people's rather than one's or everybody's, 0 (as in the
+    /// paper's data) to 1 (as where many people live).
+    pub sharing_in_groups: Range<f64>,
     /// How many things there are.
     pub things: RangeInclusive<usize>,
     /// How many days were watched.
@@ -228,7 +243,7 @@ impl RoutineParameters {
         Self {
             people: PeopleTemplate::Family,
             structure: Structure::Drawn,
-            owner_set_sizes: OwnerSetSizes::OF_THE_PAPER,
+            sharing_in_groups: 0.0..0.0,
             things: 32..=36,
             days: 7,
             first_day: FirstDay::Drawn,
