@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use coin_schemas::household::ObjectId;
 use coin_schemas::report::{Gate, Stopped};
 
-use super::{Agent, AgentSettings, DOUBTFUL, Effect, ObjectState, Phase, QuestionChoice};
+use super::{Agent, AgentSettings, Effect, ObjectState, Phase, QuestionChoice};
+use crate::evidence::DOUBTFUL;
 use crate::gate::{
     AdaptedThreshold, Alike, AlikeStanding, Candidate, Held, TrackRecord, asked_together, first_few_to_ask,
     first_to_ask, wants_to_ask,

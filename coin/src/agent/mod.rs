@@ -18,7 +18,7 @@ use thiserror::Error;
 
 pub use effect::Effect;
 pub use event::{Event, Inference, Parts};
-pub use state::{DOUBTFUL, Known, KnownSource, NOTABLE, ObjectState};
+pub use state::{Known, KnownSource, NOTABLE, ObjectState};
 
 use crate::calibration::Thresholds;
 use crate::conformal::Level;

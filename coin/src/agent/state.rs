@@ -16,9 +16,6 @@ use crate::owners::{OwnerSet, OwnerSetDistribution};
 /// A belief that moves by less than this is not told to anybody before the end of the run.
 pub const NOTABLE: f64 = 0.005;
 
-/// An answer that is less probably right than this, by everything that is known of the thing, is asked to be confirmed.
-pub const DOUBTFUL: f64 = 0.5;
-
 /// What is reliably known of a thing's owners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Known {

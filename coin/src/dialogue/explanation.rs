@@ -42,6 +42,8 @@ pub enum Conclusion<'a> {
         by: Option<UserIndex>,
         /// When.
         on: Date,
+        /// Whom everything else that is known of the thing speaks for, where that makes the answer doubtful.
+        against: Option<OwnerSet>,
     },
     /// A person said so, but the use of the thing since fits other owners better.
     Outdated {
@@ -129,10 +131,15 @@ pub fn explain(explained: &Explained<'_>) -> String {
     let name = capitalised(&thing.name);
     let roster = explained.roster;
     match explained.conclusion {
-        Conclusion::Answered { reading, words, by, on } => {
+        Conclusion::Answered { reading, words, by, on, against } => {
             let person = by.map_or("A person".to_owned(), |user| roster.name(user).to_string());
             let belongs = belongs(roster, reading, &thing, "");
-            format!("{person} said on {on} that {} {belongs}. The words were: {}", thing.name, quoted(words))
+            let although = against.map_or(String::new(), |owners| {
+                let owners = list(roster, owners, Joined::And);
+                format!(", although everything else that is known speaks for {owners}")
+            });
+            let words = quoted(words);
+            format!("{person} said on {on} that {} {belongs}{although}. The words were: {words}", thing.name)
         }
         Conclusion::Outdated { said, by, on, owners, confidence } => {
             let person = by.map_or("A person".to_owned(), |user| roster.name(user).to_string());

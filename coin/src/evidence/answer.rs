@@ -7,6 +7,16 @@ use crate::owners::{OwnerSet, OwnerSetDistribution};
 /// likely as the next to be named in the rest of them.
 const ABOUT_ONE_PERSON: f64 = 0.75;
 
+/// An answer that is less probably right than this, by everything that is known of the thing, is doubtful.
+pub const DOUBTFUL: f64 = 0.5;
+
+/// Whom everything but the answer speaks for, where the answer is doubtful.
+pub fn against_answer(belief: &OwnerSetDistribution, named: OwnerSet, members: usize) -> Option<OwnerSet> {
+    let after = after_answer(belief, named, members);
+    let is_weighed = after.entries().iter().any(|&(set, _)| set == named);
+    (is_weighed && after.probability(named) < DOUBTFUL).then(|| belief.best().0)
+}
+
 /// p(S | answer A) ∝ p(S)·p(A | S) in a household of so many members, where A is named with a probability of .95 if it is right.
 /// Unchanged where A is none of the sets, as where somebody outside the household owns the thing.
 pub fn after_answer(belief: &OwnerSetDistribution, named: OwnerSet, members: usize) -> OwnerSetDistribution {
@@ -64,6 +74,15 @@ mod tests {
         let wrong = 0.05 * (0.9 * (0.75 / 4.0 + 0.25 / 2.0) + 0.04 * (0.25 / 2.0));
         let after = after_answer(&before, set(&[1]), 3);
         assert!((after.probability(set(&[1])) - right / (right + wrong)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn only_a_doubtful_answer_has_something_against_it() {
+        let before = belief(&[(&[0], 0.898), (&[1], 0.002), (&[0, 1], 0.1)]);
+        assert_eq!(against_answer(&before, set(&[1]), 2), Some(set(&[0])));
+        assert_eq!(against_answer(&before, set(&[0, 1]), 2), None);
+        assert_eq!(against_answer(&before, set(&[0]), 2), None);
+        assert_eq!(against_answer(&before, OwnerSet::EMPTY, 2), None, "a stranger's");
     }
 
     #[test]

@@ -17,7 +17,7 @@ mod prior;
 
 use libm::{lgamma, log};
 
-pub use answer::after_answer;
+pub use answer::{DOUBTFUL, after_answer, against_answer};
 pub use context::WeighedContext;
 pub use newcomers::Arrivals;
 pub use outdated::{OUTDATED, since_answer};

@@ -1,7 +1,8 @@
 //! Answers that may be wrong: which are asked about again, and how answers move the threshold of the adaptive gate.
 
-use coin::agent::{AgentSettings, DOUBTFUL};
+use coin::agent::AgentSettings;
 use coin::conformal::Level;
+use coin::evidence::DOUBTFUL;
 use coin_schemas::report::{Gate, Stopped};
 use rstest::rstest;
 

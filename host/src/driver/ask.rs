@@ -1,9 +1,10 @@
 //! One question: QUESTION-GENERATION, the person, UNDERSTAND-ANSWER, and the record of the answer.
 
-use coin::agent::{Agent, DOUBTFUL, Event, ObjectState};
+use coin::agent::{Agent, Event, ObjectState};
 use coin::dialogue::{
     Doubt, Reading, as_of_one_thing, read_joint_answer, word_confirmation, word_joint_question,
 };
+use coin::evidence::DOUBTFUL;
 use coin::owners::OwnerSet;
 use coin::roster::Roster;
 use coin_schemas::events::LogEvent;

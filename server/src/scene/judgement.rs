@@ -5,7 +5,7 @@ use coin::captions::civil_seconds;
 use coin::dialogue::{
     Conclusion, Explained, Grounds, Reading, RelativeGrounds, SeenRelation, Standing, UserGrounds, explain,
 };
-use coin::evidence::{EvidenceParameters, OUTDATED, Relation, likeness_counts, since_answer};
+use coin::evidence::{EvidenceParameters, OUTDATED, Relation, against_answer, likeness_counts, since_answer};
 use coin::owners::{OwnerSet, OwnerSetDistribution};
 use coin::roster::Roster;
 use coin::sharing::ShareThresholds;
@@ -348,6 +348,7 @@ impl Scene<'_> {
                 words: &answer.answer,
                 by: answer.answered_by.as_ref().and_then(|name| roster.index_of(name.as_str()).ok()),
                 on: answer.at.date(),
+                against: against_answer(&judgement.distribution, judgement.reading.owners, roster.len()),
             },
             Basis::Outdated(answer) => Conclusion::Outdated {
                 said: Reading {

@@ -83,7 +83,11 @@ fn an_answer_is_told_with_its_words() {
     let on = "2025-01-19".parse().unwrap();
     let by = Some(crate::support::user(1));
     let words = "It is\u{202e} mine,\nof course";
-    let told = explained("marker", Conclusion::Answered { reading, words, by, on }, Grounds::default());
+    let told = explained(
+        "marker",
+        Conclusion::Answered { reading, words, by, on, against: None },
+        Grounds::default(),
+    );
     assert_eq!(
         told,
         "Mary said on 2025-01-19 that the marker in the office belongs to Mary. The words were: \"It is\\u{202e} mine, of course\"."
@@ -91,12 +95,28 @@ fn an_answer_is_told_with_its_words() {
     let reading = Reading { owners: OwnerSet::EMPTY, outside_household: true };
     let told = explained(
         "marker",
-        Conclusion::Answered { reading, words: "A guest's.", by: None, on },
+        Conclusion::Answered { reading, words: "A guest's.", by: None, on, against: None },
         Grounds::default(),
     );
     assert_eq!(
         told,
         "A person said on 2025-01-19 that the marker in the office belongs to somebody outside the household. The words were: \"A guest's.\""
+    );
+}
+
+#[test]
+fn what_speaks_against_an_answer_is_told() {
+    let reading = Reading { owners: set(&[1]), outside_household: false };
+    let on = "2025-01-19".parse().unwrap();
+    let against = Some(set(&[0, 2]));
+    let told = explained(
+        "marker",
+        Conclusion::Answered { reading, words: "Mine.", by: Some(crate::support::user(1)), on, against },
+        Grounds::default(),
+    );
+    assert_eq!(
+        told,
+        "Mary said on 2025-01-19 that the marker in the office belongs to Mary, although everything else that is known speaks for Bob and Tom. The words were: \"Mine.\""
     );
 }
 
