@@ -2,6 +2,7 @@
 
 mod command;
 mod fixtures;
+mod limit;
 mod paper;
 
 use std::collections::{BTreeMap, BTreeSet};
