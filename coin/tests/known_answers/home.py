@@ -8,17 +8,21 @@ that are shared between points of the grid. Needs nothing but Python.
 """
 
 import json
+from functools import cache
 from itertools import combinations, product
 from math import exp, lgamma, log
 
 SIZES = [(0.75, 0.15), (0.60, 0.25), (0.45, 0.30), (0.75, 0.05), (0.60, 0.08), (0.45, 0.11)]
 GROUPS, OF_GROUP_SIZE = SIZES[3:], 0.25
 LENDING = [(1.2, 10.8), (2.0, 8.0), (3.3, 6.7), (5.0, 7.5)]
-EVENNESS = [8.0, 25.0]
+EVENNESS = [(8.0, None), (25.0, None), (8.0, 1.0), (3.0, 1.0)]
+LOOSEST = {None: (8.0, None), 1.0: (3.0, 1.0)}
+OPINIONS = [0.10, 0.50]
 MISTAKEN = [0.01, 0.06]
 SINGLE_KEPT = [0.2, 0.5]
 SHARED_KEPT = [0.1, 0.35, 0.65]
-TURNS, CHANGE, EVERYBODYS_BEFORE, MOST_CUTS, TRUST, PLACE = 1.5, 0.04, 0.2, 16, 0.95, 0.05
+TURNS, CHANGE, EVERYBODYS_BEFORE, MOST_CUTS, TRUST, PLACE = [1.5, 0.3], 0.04, 0.2, 16, 0.95, 0.05
+NEGLIGIBLE = 1e-4
 
 
 def owner_sets(members):
@@ -37,6 +41,23 @@ def prior(owners, members, single, everyone):
     return of_size[len(owners)] / alike / (1.0 if between else single + everyone)
 
 
+def thought(owners, members, sizes, opinion, weight):
+    """By the number of owners; where something is expected of the class, also by that and by who is suited."""
+    if opinion is None:
+        return prior(owners, members, *sizes)
+    single, everyone, suitability = opinion
+
+    def suited(some):
+        product = 1.0
+        for person in some:
+            product *= suitability[person]
+        return product
+
+    alike = [other for other in owner_sets(members) if len(other) == len(owners)]
+    of_class = prior(owners, members, single, everyone) * len(alike) * suited(owners) / sum(map(suited, alike))
+    return (1 - weight) * prior(owners, members, *sizes) + weight * of_class
+
+
 def beside(answered, owners, own):
     """With some probability a thing has the owners of an answered one beside it, else those of the prior."""
     alone = 1.0
@@ -47,36 +68,53 @@ def beside(answered, owners, own):
     return alone * own + ((1 - alone) * shared / total if answered else 0.0)
 
 
+@cache
 def kept(users, owners, members, mistaken):
-    """In turns among the owners; a mistaken sighting names anybody."""
-    probability, used = 1.0, dict.fromkeys(owners, 0)
-    for user in users:
-        turn = 0.0
-        if user in owners:
-            turn = exp(-TURNS * used[user]) / sum(exp(-TURNS * count) for count in used.values())
-            used[user] += 1
-        probability *= (1 - mistaken) * turn + mistaken / members
-    return probability
+    """In turns among the owners, strictly or loosely; a mistaken sighting names anybody."""
+    total = 0.0
+    for turns in TURNS:
+        probability, used = 1.0, dict.fromkeys(owners, 0)
+        for user in users:
+            turn = 0.0
+            if user in owners:
+                turn = exp(-turns * used[user]) / sum(exp(-turns * count) for count in used.values())
+                used[user] += 1
+            probability *= (1 - mistaken) * turn + mistaken / members
+        total += probability / len(TURNS)
+    return total
 
 
 def log_beta(a, b):
     return lgamma(a) + lgamma(b) - lgamma(a + b)
 
 
+def split(counts, concentration):
+    """The logarithm of a Dirichlet-multinomial of who comes when."""
+    logarithm = lgamma(len(counts) * concentration) - lgamma(len(counts) * concentration + sum(counts))
+    return logarithm + sum(lgamma(concentration + count) - lgamma(concentration) for count in counts)
+
+
+@cache
 def lent(users, owners, members, lending, evenness):
-    """A borrow rate integrated out, an even split among the owners."""
+    """A borrow rate integrated out, a split among the owners and, unless anybody is as likely, among the borrowers."""
+    among_owners, among_borrowers = evenness
     own = sum(user in owners for user in users)
     borrowed, logarithm = len(users) - own, 0.0
     if len(owners) < members:
         a, b = lending
-        logarithm += log_beta(a + borrowed, b + own) - log_beta(a, b) - borrowed * log(members - len(owners))
+        logarithm += log_beta(a + borrowed, b + own) - log_beta(a, b)
+        if among_borrowers is None:
+            logarithm -= borrowed * log(members - len(owners))
+        else:
+            others = set(range(members)) - owners
+            logarithm += split([users.count(user) for user in others], among_borrowers)
     if len(owners) > 1:
-        logarithm += lgamma(len(owners) * evenness) - lgamma(len(owners) * evenness + own)
-        logarithm += sum(lgamma(evenness + users.count(user)) - lgamma(evenness) for user in owners)
+        logarithm += split([users.count(user) for user in owners], among_owners)
     return exp(logarithm)
 
 
-def changed(users, owners, members, lending):
+@cache
+def changed(users, owners, members, lending, evenness):
     """Somebody else's, or everybody's, before one of some sessions; None where there is nothing to cut."""
     if len(users) < 2 or members < 2:
         return None
@@ -88,8 +126,8 @@ def changed(users, owners, members, lending):
     cuts = [min(-(-place * len(users) // (places + 1)), len(users) - 1) for place in range(1, places + 1)]
     total = 0.0
     for cut in cuts:
-        earlier = sum(weight * lent(users[:cut], other, members, lending, EVENNESS[0]) for other, weight in before.items())
-        total += earlier / sum(before.values()) * lent(users[cut:], owners, members, lending, EVENNESS[0])
+        earlier = sum(weight * lent(users[:cut], other, members, lending, evenness) for other, weight in before.items())
+        total += earlier / sum(before.values()) * lent(users[cut:], owners, members, lending, evenness)
     return total / len(cuts)
 
 
@@ -222,17 +260,18 @@ def in_company(beliefs, priors, answers, alike, near):
     return told
 
 
-def judged(things, members, answers, alike, near):
+def judged(things, members, answers, opinions, alike, near):
     """For every thing the probability of every owner set."""
     sets = owner_sets(members)
-    sums, total = [dict.fromkeys(sets, 0.0) for _ in things], 0.0
+    sums = [dict.fromkeys(sets, 0.0) for _ in things]
     before = [dict.fromkeys(sets, 0.0) for _ in things]
     answered = [
         [(answers[other], weight) for pair, weight in near.items() if place in pair for other in set(pair) - {place} if other in answers]
         for place in range(len(things))
     ]
-    for sizes, lending, evenness, mistaken, single, shared in product(
-        SIZES, LENDING, EVENNESS, MISTAKEN, SINGLE_KEPT, SHARED_KEPT
+    points = []
+    for sizes, opinion_weight, lending, evenness, mistaken, single, shared in product(
+        SIZES, OPINIONS, LENDING, EVENNESS, MISTAKEN, SINGLE_KEPT, SHARED_KEPT
     ):
         weight, beliefs, thoughts = OF_GROUP_SIZE * max(members - 2, 0) if sizes in GROUPS else 1.0, [], [{} for _ in things]
         for place, users in enumerate(things):
@@ -241,18 +280,23 @@ def judged(things, members, answers, alike, near):
                 share = single if len(owners) == 1 else shared
                 use = share * kept(users, owners, members, mistaken)
                 use += (1 - share) * lent(users, owners, members, lending, evenness)
-                moved = changed(users, owners, members, lending)
+                moved = changed(users, owners, members, lending, LOOSEST[evenness[1]])
                 if moved is not None:
                     use = (1 - CHANGE) * use + CHANGE * moved
-                thought = beside(answered[place], owners, prior(owners, members, *sizes))
-                joint[owners], thoughts[place][owners] = thought * use, thought
+                own = thought(owners, members, sizes, opinions.get(place), opinion_weight)
+                thoughts[place][owners] = beside(answered[place], owners, own)
+                joint[owners] = thoughts[place][owners] * use
             everything = sum(joint.values())
             beliefs.append({owners: value / everything for owners, value in joint.items()})
             named = answers.get(place)
             weight *= everything if named is None else TRUST * joint[named] + (1 - TRUST) * everything
-        total += weight
-        for of_thing, thought in zip(before, thoughts):
-            for owners, value in thought.items():
+        points.append((weight, beliefs, thoughts))
+    everything = sum(weight for weight, *_ in points)
+    points = [point for point in points if point[0] / everything > NEGLIGIBLE]
+    total = sum(weight for weight, *_ in points)
+    for weight, beliefs, thoughts in points:
+        for of_thing, before_use in zip(before, thoughts):
+            for owners, value in before_use.items():
                 of_thing[owners] += weight * value
         for of_thing, belief in zip(sums, beliefs):
             for owners, value in belief.items():
@@ -280,33 +324,41 @@ TIDY = lying([(0, 1), (0, 2), (1, 2), (3, 4), (4, 5), (3, 5), (6, 7), (8, 9), (1
 TIDY = {tuple(sorted(pair)): weight for pair, weight in TIDY.items()}
 MESSY = lying([(0, 3), (1, 6), (2, 9), (4, 7), (5, 8), (10, 11), (11, 12)])
 
+SHARED, HERS = (0.22, 0.66, [1.0, 1.0, 1.0]), (0.88, 0.04, [1.0, 3.0, 1.0])
+
 CASES = [
-    (3, ["aabacaa", "abab", "ccacc"], {}, {}, {}),
-    (3, ["aabacaa", "abab", "ccacc"], {2: [2]}, {}, {}),
-    (3, ["aaaaaabbbbb", "", "b"], {0: [1]}, {}, {}),
-    (2, ["abababab", "aaaab", "bbbbbbbb"], {1: [0, 1]}, {}, {}),
-    (4, ["abcdabcd", "aaadaaa", "bbcbcb", "dddd"], {1: [0]}, {}, {}),
-    (1, ["aaa"], {}, {}, {}),
-    (3, WEEK, {}, looking(0), {}),
-    (3, WEEK, {11: [1]}, looking(1), {}),
-    (3, WEEK, {}, {}, TIDY),
-    (3, WEEK, {12: [0]}, {}, MESSY),
-    (3, WEEK, {5: [1], 10: [0, 1]}, looking(0), TIDY),
+    (3, ["aabacaa", "abab", "ccacc"], {}, {}, {}, {}),
+    (3, ["aabacaa", "abab", "ccacc"], {2: [2]}, {}, {}, {}),
+    (3, ["aaaaaabbbbb", "", "b"], {0: [1]}, {}, {}, {}),
+    (2, ["abababab", "aaaab", "bbbbbbbb"], {1: [0, 1]}, {}, {}, {}),
+    (4, ["abcdabcd", "aaadaaa", "bbcbcb", "dddd"], {1: [0]}, {}, {}, {}),
+    (1, ["aaa"], {}, {}, {}, {}),
+    (3, ["aabacaa", "abab", "cb", "bb"], {}, {0: HERS, 1: SHARED, 2: HERS}, {}, {}),
+    (3, ["aabacaa", "abab", "cb", "bb"], {3: [1]}, {2: HERS, 3: HERS}, {}, {}),
+    (3, WEEK, {}, {}, looking(0), {}),
+    (3, WEEK, {11: [1]}, {}, looking(1), {}),
+    (3, WEEK, {}, {}, {}, TIDY),
+    (3, WEEK, {12: [0]}, {}, {}, MESSY),
+    (3, WEEK, {5: [1], 10: [0, 1]}, {8: SHARED, 9: SHARED}, looking(0), TIDY),
 ]
 
 rows = []
-for members, things, answers, alike, near in CASES:
-    users = [[ord(letter) - ord("a") for letter in sessions] for sessions in things]
+for members, things, answers, opinions, alike, near in CASES:
+    users = [tuple(ord(letter) - ord("a") for letter in sessions) for sessions in things]
     named = {place: frozenset(owners) for place, owners in answers.items()}
     posteriors = [
         [{"owners": sorted(owners), "probability": round(value, 12)} for owners, value in of_thing.items()]
-        for of_thing in judged(users, members, named, alike, near)
+        for of_thing in judged(users, members, named, opinions, alike, near)
     ]
     rows.append(
         {
             "members": members,
             "things": users,
             "answers": [{"thing": place, "owners": owners} for place, owners in answers.items()],
+            "opinions": [
+                {"thing": place, "single": single, "everyone": everyone, "suitability": suitability}
+                for place, (single, everyone, suitability) in opinions.items()
+            ],
             "alike": [[*pair, round(cosine, 12)] for pair, cosine in alike.items()],
             "near": [[*pair, round(weight, 12)] for pair, weight in near.items()],
             "posteriors": posteriors,

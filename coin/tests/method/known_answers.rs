@@ -1,7 +1,10 @@
 //! Answers that were computed by other means: the scripts under `coin/tests/known_answers/`, whose headers say by
 //! which, print the tables beside them.
 
+use std::collections::BTreeMap;
+
 use coin::calibration::{CalibrationSample, Levels, calibrate};
+use coin::common_sense::Expectation;
 use coin::conformal::risk::{Outcome, RiskSample, risk_threshold};
 use coin::conformal::{Quantile, split};
 use coin::evidence::home::{HomeEvidence, SeenThing, Told};
@@ -64,9 +67,22 @@ fn homes_are_judged_as_by_enumeration() {
                 latecomers: OwnerSet::EMPTY,
             })
             .collect();
+        let opinions: BTreeMap<usize, Expectation> = row["opinions"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|opinion| {
+                let (single, everyone) = (number(&opinion["single"]), number(&opinion["everyone"]));
+                let suitability = numbers(&opinion["suitability"]);
+                (number(&opinion["thing"]) as usize, Expectation { single, everyone, suitability })
+            })
+            .collect();
         let mut told = vec![Told { answer: None, opinion: Opinion::None }; things.len()];
         for answer in row["answers"].as_array().unwrap() {
             told[number(&answer["thing"]) as usize].answer = Some(owners(&answer["owners"]));
+        }
+        for (place, told) in told.iter_mut().enumerate() {
+            told.opinion = opinions.get(&place).into();
         }
         let judgement = HomeEvidence::new(things, EvidenceParameters::default()).judge(&told);
         for (found, expected) in judgement.distributions().iter().zip(row["posteriors"].as_array().unwrap()) {

@@ -1,5 +1,6 @@
-//! The habits of a home, which its things have in common: how much is lent, how evenly what is shared is used, how often
-//! a sighting is mistaken, and how many things have several owners.
+//! The habits of a home, which its things have in common: how much is lent, how evenly people use what they share and what
+//! they borrow, how often a sighting is mistaken, how many things have several owners, and how far they are whose one would
+//! expect.
 //!
 //! The habits are one of [`HABITS`] points of a grid, and how probable each is follows exactly from all things of the
 //! home and all answers about them (an empirical-Bayes hierarchy without an iteration, so that the same home gives the
@@ -24,8 +25,37 @@ pub(super) const LENDING: [Lending; 4] = [
     Lending { borrowed: 5.0, own_use: 7.5 },
 ];
 
-/// Concentration α of the split of sessions among owners who take no turns: the larger, the more even.
-pub(super) const EVENNESS: [f64; 2] = [8.0, 25.0];
+/// How evenly people use what several of them use, as concentrations of a Dirichlet–multinomial: the larger, the more even.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Evenness {
+    /// α of the split among owners who take no turns.
+    pub(super) owners: f64,
+    /// The same of the split among those who borrow a thing; `None` where everybody is as likely to.
+    pub(super) borrowers: Option<f64>,
+}
+
+/// Homes in which anybody borrows anything, and then, from [`FRIENDS`] on, those in which the same person borrows the same
+/// thing again.
+pub(super) const EVENNESS: [Evenness; 4] = [
+    Evenness { owners: 8.0, borrowers: None },
+    Evenness { owners: 25.0, borrowers: None },
+    Evenness { owners: 8.0, borrowers: Some(1.0) },
+    Evenness { owners: 3.0, borrowers: Some(1.0) },
+];
+
+/// See [`EVENNESS`].
+const FRIENDS: usize = 2;
+
+/// The places in [`EVENNESS`] by which a thing that changed hands was used: where anybody borrows, and in other homes. Both
+/// its pasts are short, so that the loosest of either does.
+pub(super) const LOOSEST: [usize; 2] = [0, 3];
+
+/// The weights of what is thought of a thing's owners before anybody used it: the usual one, or, where the things of the home
+/// turn out to be whose one would expect, [`FOLLOWED`].
+pub(super) const OPINIONS: usize = 2;
+
+/// The weight of an opinion in a home whose things are whose one would expect.
+pub(super) const FOLLOWED: f64 = 0.5;
 
 /// The share of sightings that name anybody at random.
 pub(super) const MISTAKEN: [f64; 2] = [0.01, 0.06];
@@ -53,15 +83,21 @@ const GROUPS: usize = 3;
 const OF_GROUP_SIZE: f64 = 0.25;
 
 /// The number of points of the grid.
-pub(super) const HABITS: usize =
-    SIZES.len() * LENDING.len() * EVENNESS.len() * MISTAKEN.len() * SINGLE_KEPT.len() * SHARED_KEPT.len();
+pub(super) const HABITS: usize = SIZES.len()
+    * OPINIONS
+    * LENDING.len()
+    * EVENNESS.len()
+    * MISTAKEN.len()
+    * SINGLE_KEPT.len()
+    * SHARED_KEPT.len();
 
 /// One point of the grid: the places of its habits in their lists, and the shares of what is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Habits {
-    pub(super) sizes: usize,
-    pub(super) lending: usize,
-    pub(super) evenness: usize,
+    sizes: usize,
+    opinion: usize,
+    lending: usize,
+    evenness: usize,
     pub(super) mistaken: usize,
     single_kept: f64,
     shared_kept: f64,
@@ -79,6 +115,7 @@ impl Habits {
             };
             Self {
                 sizes: place(SIZES.len()),
+                opinion: place(OPINIONS),
                 lending: place(LENDING.len()),
                 evenness: place(EVENNESS.len()),
                 mistaken: place(MISTAKEN.len()),
@@ -99,8 +136,18 @@ impl Habits {
         if owners == 1 { self.single_kept } else { self.shared_kept }
     }
 
+    /// The place of the prior among those of every of [`SIZES`] with every one of [`OPINIONS`].
+    pub(super) fn prior_place(&self) -> usize {
+        self.sizes * OPINIONS + self.opinion
+    }
+
     /// The place of the account of lending among its kinds.
     pub(super) fn lent(&self) -> usize {
         self.lending * EVENNESS.len() + self.evenness
+    }
+
+    /// The place of the account of a change of hands among its kinds.
+    pub(super) fn changed(&self) -> usize {
+        self.lending * LOOSEST.len() + usize::from(self.evenness >= FRIENDS)
     }
 }

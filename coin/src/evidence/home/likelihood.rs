@@ -4,19 +4,18 @@ use libm::{exp, log};
 
 use super::super::EvidenceParameters;
 use super::super::prior::{Candidates, log_mean, relative_weights};
-use super::habits::{EVENNESS, LENDING, Lending, MISTAKEN};
+use super::habits::{EVENNESS, Evenness, LENDING, LOOSEST, Lending, MISTAKEN};
 use crate::owners::OwnerSet;
 use crate::roster::UserIndex;
 
 /// A change of hands is looked for at no more than so many places of a history, evenly spread.
 const MOST_CUTS: usize = 16;
 
-/// The place in [`EVENNESS`] of the split among the owners of a thing that changed hands. Both its pasts are short, so that
-/// the looser one does.
-const SPLIT: usize = 0;
-
 /// How probable it is that a thing which changed hands was everybody's before; else it was one person's.
 const EVERYBODYS_BEFORE: f64 = 0.2;
+
+/// The share of β in the law of turns where these are taken loosely.
+const LOOSELY: f64 = 0.2;
 
 /// The owners of a shared thing who have used it so much more often than another that it makes no further difference.
 const FAR_AHEAD: usize = 64;
@@ -25,13 +24,13 @@ const FAR_AHEAD: usize = 64;
 /// its numbers, by account and by the habits of the home that the account depends on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Accounts {
-    /// Nobody but the owners uses it, and where there are several they take turns; other sightings are mistaken. For each
-    /// of [`MISTAKEN`], the sets in order.
+    /// Nobody but the owners uses it, and where there are several they take turns, strictly or loosely, the one as likely as
+    /// the other; other sightings are mistaken. For each of [`MISTAKEN`], the sets in order.
     pub(super) kept: Vec<Vec<f64>>,
     /// Others borrow it, and owners use it about evenly. For each of [`LENDING`] and then of [`EVENNESS`].
     pub(super) lent: Vec<Vec<f64>>,
-    /// It was lent in the same way, and had other owners before some session. For each of [`LENDING`]; nothing where the
-    /// thing was used less than twice.
+    /// It was lent in the same way, and had other owners before some session. For each of [`LENDING`] and then of
+    /// [`LOOSEST`]; nothing where the thing was used less than twice.
     pub(super) changed: Vec<Vec<f64>>,
 }
 
@@ -55,9 +54,14 @@ pub(super) fn logarithms(
     let (sets, members) = (candidates.sets(), candidates.people());
     let counting = Counting::new(users.len(), members);
     let counts = counts_of(users, members);
-    let turns = Turns::new(parameters.turns);
-    let of_sets: Vec<[f64; MISTAKEN.len()]> =
-        sets.iter().map(|&set| turns.log_likelihood(users, set, members)).collect();
+    let turns = [1.0, LOOSELY].map(|share| Turns::new(share * parameters.turns));
+    let of_sets: Vec<[f64; MISTAKEN.len()]> = sets
+        .iter()
+        .map(|&set| {
+            let [strict, loose] = turns.each_ref().map(|turns| turns.log_likelihood(users, set, members));
+            std::array::from_fn(|mistaken| log_mean(&[strict[mistaken], loose[mistaken]]))
+        })
+        .collect();
     let kept = (0..MISTAKEN.len()).map(|mistaken| of_sets.iter().map(|of_set| of_set[mistaken]).collect());
     let lent = (0..LENDING.len())
         .flat_map(|lending| (0..EVENNESS.len()).map(move |even| (lending, even)))
@@ -151,8 +155,33 @@ fn contains(owners: OwnerSet, place: usize) -> bool {
 struct Counting {
     members: usize,
     lending: Vec<LendingTable>,
-    /// For each of [`EVENNESS`] the rising factorials of α and of kα for k owners.
-    evenness: Vec<Vec<RisingFactorials>>,
+    /// For each of [`EVENNESS`].
+    evenness: Vec<EvennessTable>,
+}
+
+struct EvennessTable {
+    owners: Split,
+    borrowers: Option<Split>,
+}
+
+/// The rising factorials of kα for k people, whose place is k.
+struct Split(Vec<RisingFactorials>);
+
+impl Split {
+    fn new(concentration: f64, members: usize, sessions: usize) -> Self {
+        let of_so_many = |people: usize| concentration * people.max(1) as f64;
+        Self((0..=members).map(|people| RisingFactorials::new(of_so_many(people), sessions)).collect())
+    }
+
+    /// One person's part of the Dirichlet–multinomial.
+    fn share(&self, count: usize) -> f64 {
+        self.0[1].at(count)
+    }
+
+    /// What all parts together are divided by.
+    fn all(&self, people: usize, sessions: usize) -> f64 {
+        self.0[people].at(sessions)
+    }
 }
 
 struct LendingTable {
@@ -187,37 +216,42 @@ impl Counting {
             own_use: RisingFactorials::new(own_use, sessions),
             all: RisingFactorials::new(borrowed + own_use, sessions),
         });
-        let evenness = EVENNESS.map(|alpha| {
-            (0..=members)
-                .map(|owners| RisingFactorials::new(alpha * owners.max(1) as f64, sessions))
-                .collect()
+        let split = |concentration: f64| Split::new(concentration, members, sessions);
+        let evenness = EVENNESS.map(|Evenness { owners, borrowers }| EvennessTable {
+            owners: split(owners),
+            borrowers: borrowers.map(split),
         });
         Self { members, lending: lending.into(), evenness: evenness.into() }
     }
 
-    /// ln p(c | S), as [`super::super::log_likelihood`] has it.
+    /// ln p(c | S), as [`super::super::log_likelihood`] has it. Where the same people borrow the same thing again, its
+    /// `−m ln(n−k)` is the split of m sessions among n−k borrowers.
     fn log_likelihood(&self, counts: &[usize], owners: OwnerSet, lending: usize, evenness: usize) -> f64 {
         let (mut own, mut all) = (0, 0);
-        let mut shares = 0.0;
-        let evenness = &self.evenness[evenness];
+        let (mut of_owners, mut of_borrowers) = (0.0, 0.0);
+        let EvennessTable { owners: among_owners, borrowers: among_borrowers } = &self.evenness[evenness];
         for (place, &count) in counts.iter().enumerate() {
             all += count;
             if contains(owners, place) {
                 own += count;
-                shares += evenness[1].at(count);
+                of_owners += among_owners.share(count);
+            } else if let Some(split) = among_borrowers {
+                of_borrowers += split.share(count);
             }
         }
         let owner_count = owners.len();
         let mut log_probability = 0.0;
         if owner_count < self.members {
             let table = &self.lending[lending];
-            let borrowed = all - own;
-            log_probability += table.borrowed.at(borrowed) + table.own_use.at(own)
-                - table.all.at(all)
-                - borrowed as f64 * log((self.members - owner_count) as f64);
+            let (others, borrowed) = (self.members - owner_count, all - own);
+            log_probability += table.borrowed.at(borrowed) + table.own_use.at(own) - table.all.at(all);
+            log_probability += match among_borrowers {
+                None => -(borrowed as f64 * log(others as f64)),
+                Some(split) => of_borrowers - split.all(others, borrowed),
+            };
         }
         if owner_count > 1 {
-            log_probability += shares - evenness[owner_count].at(own);
+            log_probability += of_owners - among_owners.all(owner_count, own);
         }
         log_probability
     }
@@ -235,14 +269,15 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
         .collect();
     let cuts = cuts(users.len());
     (0..LENDING.len())
-        .map(|lending| {
+        .flat_map(|lending| LOOSEST.map(|evenness| (lending, evenness)))
+        .map(|(lending, evenness)| {
             let mut sums = vec![Vec::with_capacity(cuts.len()); sets.len()];
             for &cut in &cuts {
                 let (earlier, later) = users.split_at(cut);
                 let (earlier, later) = (counts_of(earlier, members), counts_of(later, members));
                 let past: Vec<f64> = before
                     .iter()
-                    .map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, SPLIT))
+                    .map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, evenness))
                     .collect();
                 let largest = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 let weighed: Vec<(OwnerSet, f64, f64)> = before
@@ -265,7 +300,7 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
                         true => log_mean_of(Some(set)),
                         false => of_all,
                     };
-                    sum.push(of_others + counting.log_likelihood(&later, set, lending, SPLIT));
+                    sum.push(of_others + counting.log_likelihood(&later, set, lending, evenness));
                 }
             }
             sums.iter().map(|sum| log_mean(sum)).collect()

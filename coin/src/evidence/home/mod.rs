@@ -38,7 +38,10 @@ const MOST_SETS: usize = 800;
 const MOST_RIVALS: usize = 30;
 
 /// Habits that are less probable than this are left out of the mixture.
-const NEGLIGIBLE: f64 = 1e-9;
+const NEGLIGIBLE: f64 = 1e-4;
+
+/// What was worked out for habits holds for others whose probabilities differ by no more.
+const SAME: f64 = 1e-9;
 
 /// What was seen of one thing of a home.
 #[derive(Debug, Clone, PartialEq)]
@@ -268,7 +271,11 @@ impl HomeEvidence {
             }
         }
         let probabilities = from_logarithms(logarithms.into_iter());
-        Habits::all().zip(probabilities).filter(|&(_, probability)| probability > NEGLIGIBLE).collect()
+        let mut habits: Vec<(Habits, f64)> =
+            Habits::all().zip(probabilities).filter(|&(_, probability)| probability > NEGLIGIBLE).collect();
+        let heard: f64 = habits.iter().map(|(_, probability)| probability).sum();
+        habits.iter_mut().for_each(|(_, probability)| *probability /= heard);
+        habits
     }
 }
 
@@ -319,13 +326,10 @@ impl Thing {
     }
 }
 
-/// Whether two distributions of habits differ by no more than what is left out of either.
+/// Whether two distributions of habits are the same but for rounding.
 fn are_same(left: &[(Habits, f64)], right: &[(Habits, f64)]) -> bool {
     left.len() == right.len()
-        && left
-            .iter()
-            .zip(right)
-            .all(|(left, right)| left.0 == right.0 && (left.1 - right.1).abs() <= NEGLIGIBLE)
+        && left.iter().zip(right).all(|(left, right)| left.0 == right.0 && (left.1 - right.1).abs() <= SAME)
 }
 
 /// The weights whose natural logarithms these are, made to sum to 1.

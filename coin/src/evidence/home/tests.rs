@@ -5,6 +5,7 @@ use rstest::rstest;
 
 use super::super::posterior;
 use super::*;
+use crate::common_sense::Expectation;
 use crate::support::{any_order, any_set, moved, set, user};
 
 const EXACT: f64 = 1e-9;
@@ -99,8 +100,8 @@ mod accounts {
         let accounts = likelihood::logarithms(&users, &candidates, &defaults());
         let lent = &accounts[habits::MISTAKEN.len()];
         let habits::Lending { borrowed, own_use } = habits::LENDING[0];
-        let parameters =
-            EvidenceParameters { borrowed, own_use, evenness: habits::EVENNESS[0], ..defaults() };
+        let evenness = habits::EVENNESS[0].owners;
+        let parameters = EvidenceParameters { borrowed, own_use, evenness, ..defaults() };
         for (&set, lent) in candidates.sets().iter().zip(lent) {
             assert!((lent - log_likelihood(&[4, 2, 1], set, &parameters)).abs() < EXACT);
         }
@@ -216,6 +217,38 @@ fn a_home_shows_how_much_it_lends() {
     assert!(single(lenders.clone(), defaults()) > single(keepers.clone(), defaults()) + 0.1);
     let ordinary = EvidenceParameters { habits: HabitSource::Ordinary, ..defaults() };
     assert!((single(lenders, ordinary) - single(keepers, ordinary)).abs() < EXACT);
+}
+
+/// The same thing in two homes: in one anybody borrows anything, in the other everything has one borrower.
+#[test]
+fn a_home_shows_whether_the_same_person_borrows_again() {
+    let open = "aaabbaabbaaabb";
+    let anybody = home(4, &[open, "bbabbcbbdbb", "ccaccbccdcc", "ddaddbddcdd", "aacaadaabaa"]);
+    let friends = home(4, &[open, "bbcbbcbbcbb", "ccdccdccdcc", "ddaddaddadd", "aacaacaacaa"]);
+    let single = |things| judged(things, &[], defaults())[0].probability(set(&[0]));
+    let (anybody, friends) = (single(anybody), single(friends));
+    assert!(friends > anybody + 0.1, "{friends} and {anybody}");
+}
+
+/// What nobody used yet, beside things that are whose one would expect, and beside others.
+#[test]
+fn a_home_shows_whether_its_things_are_whose_one_would_expect() {
+    let expected = |suited: usize| Expectation {
+        single: 0.88,
+        everyone: 0.04,
+        suitability: (0..3).map(|place| if place == suited { 3.0 } else { 1.0 }).collect(),
+    };
+    let used = ["aaaaaa", "bbbbbb", "cccccc", "aaaaa", "bbbbb", "ccccc", "aaaa", "bbbb", "cccc", ""];
+    let of_first = |suited: fn(usize) -> usize| {
+        let opinions: Vec<Expectation> =
+            (0..9).map(|place| expected(suited(place))).chain([expected(0)]).collect();
+        let told = |opinion| Told { answer: None, opinion: Opinion::OfClass(opinion) };
+        let evidence = HomeEvidence::new(home(3, &used), defaults());
+        let judgement = evidence.judge(&opinions.iter().map(told).collect::<Vec<_>>());
+        judgement.distributions()[9].probability(set(&[0]))
+    };
+    let (as_expected, otherwise) = (of_first(|place| place % 3), of_first(|place| (place + 1) % 3));
+    assert!(as_expected > otherwise + 0.05, "{as_expected} and {otherwise}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use libm::log;
 
 use super::super::prior::{Candidates, Opinion, SizePrior, logarithms, with_relatives};
 use super::super::{EvidenceParameters, TRUST};
-use super::habits::{EVENNESS, Habits, LENDING, MISTAKEN, SIZES};
+use super::habits::{EVENNESS, FOLLOWED, Habits, LENDING, MISTAKEN, OPINIONS, SIZES};
 use super::likelihood::Accounts;
 use super::{Thing, Use};
 use crate::owners::OwnerSet;
@@ -30,7 +30,7 @@ pub(super) struct Basis {
 enum Weights {
     /// Its belief depends on the habits of the home.
     ByHabits {
-        /// For each of [`SIZES`].
+        /// For each of [`SIZES`] and then of [`OPINIONS`].
         priors: Vec<Vec<f64>>,
         /// ln p(use, answer | habits) up to a constant, at every point of the grid.
         log_evidence: Vec<f64>,
@@ -47,20 +47,24 @@ impl Weighed {
         parameters: &EvidenceParameters,
     ) -> Self {
         let candidates = &thing.candidates;
-        let prior = |sizes: SizePrior| {
+        let prior = |sizes: SizePrior, parameters: &EvidenceParameters| {
             let mut prior = candidates.own(opinion, sizes, parameters);
             with_relatives(candidates.sets(), &mut prior, &basis.couplings);
             prior
         };
         let weights = match &thing.use_of_it {
             Use::Accounts(accounts) => {
-                let priors: Vec<Vec<f64>> = SIZES.map(prior).into();
+                let weighed: [EvidenceParameters; OPINIONS] = [*parameters, followed(parameters)];
+                let priors: Vec<Vec<f64>> = SIZES
+                    .iter()
+                    .flat_map(|&sizes| weighed.each_ref().map(|parameters| prior(sizes, parameters)))
+                    .collect();
                 let mixture = Mixture { candidates, accounts, priors: &priors, parameters };
                 let log_evidence = mixture.log_evidence(basis.answer);
                 Weights::ByHabits { priors, log_evidence }
             }
             Use::Bare(use_of_it) => {
-                let prior = prior(parameters.sizes());
+                let prior = prior(parameters.sizes(), parameters);
                 let belief = super::from_logarithms(
                     logarithms(&prior).zip(use_of_it).map(|(prior, used)| prior + used),
                 );
@@ -82,8 +86,8 @@ impl Weighed {
     pub(super) fn prior(&self, habits: &[(Habits, f64)]) -> Vec<f64> {
         match &self.weights {
             Weights::ByHabits { priors, .. } => {
-                let mut shares = [0.0; SIZES.len()];
-                habits.iter().for_each(|(habits, probability)| shares[habits.sizes] += probability);
+                let mut shares = [0.0; SIZES.len() * OPINIONS];
+                habits.iter().for_each(|(habits, probability)| shares[habits.prior_place()] += probability);
                 let sets = 0..priors.first().map_or(0, Vec::len);
                 sets.map(|set| shares.iter().zip(priors).map(|(share, prior)| share * prior[set]).sum())
                     .collect()
@@ -110,6 +114,16 @@ impl Weighed {
     }
 }
 
+/// The constants in a home whose things are whose one would expect. An opinion that is not heard stays so.
+fn followed(parameters: &EvidenceParameters) -> EvidenceParameters {
+    let weight = |usual: f64| if usual > 0.0 { usual.max(FOLLOWED) } else { 0.0 };
+    EvidenceParameters {
+        common_sense: weight(parameters.common_sense),
+        language_model: weight(parameters.language_model),
+        ..*parameters
+    }
+}
+
 /// π(S | h)·p(use | S, h), in which the accounts are mixed as the habits h are.
 struct Mixture<'a> {
     candidates: &'a Candidates,
@@ -127,9 +141,9 @@ impl Mixture<'_> {
     fn joint(&self, habits: Habits) -> impl Iterator<Item = f64> {
         let kept = &self.accounts.kept[habits.mistaken];
         let lent = &self.accounts.lent[habits.lent()];
-        let changed = self.accounts.changed.get(habits.lending);
+        let changed = self.accounts.changed.get(habits.changed());
         let change = self.change();
-        let prior = &self.priors[habits.sizes];
+        let prior = &self.priors[habits.prior_place()];
         let (single, shared) = (habits.kept(1), habits.kept(2));
         self.candidates.sets().iter().enumerate().map(move |(place, set)| {
             let share = if set.len() == 1 { single } else { shared };
@@ -167,7 +181,7 @@ impl Mixture<'_> {
         let sums: Vec<Sums> = self.priors.iter().map(|prior| self.sums(prior)).collect();
         Habits::all()
             .map(|habits| {
-                let all = sums[habits.sizes].mixed(habits, self.change());
+                let all = sums[habits.prior_place()].mixed(habits, self.change());
                 match named.and_then(|place| self.joint(habits).nth(place)) {
                     Some(named) => log(TRUST * named + (1.0 - TRUST) * all),
                     None => log(all),
@@ -198,7 +212,7 @@ struct Sums {
     kept: Vec<[f64; 2]>,
     /// For each of [`LENDING`] and then of [`EVENNESS`].
     lent: Vec<[f64; 2]>,
-    /// For each of [`LENDING`], or nothing.
+    /// For each of [`LENDING`] and then of [`LOOSEST`], or nothing.
     changed: Vec<[f64; 2]>,
 }
 
@@ -209,7 +223,7 @@ impl Sums {
             (MISTAKEN.len(), LENDING.len() * EVENNESS.len())
         );
         let (kept, lent) = (self.kept[habits.mistaken], self.lent[habits.lent()]);
-        let changed = self.changed.get(habits.lending).copied().unwrap_or_default();
+        let changed = self.changed.get(habits.changed()).copied().unwrap_or_default();
         [1, 2].iter().zip(kept).zip(lent).zip(changed).fold(0.0, |sum, (((&owners, kept), lent), changed)| {
             let share = habits.kept(owners);
             sum + (1.0 - change) * (share * kept + (1.0 - share) * lent) + change * changed
