@@ -56,7 +56,7 @@ fn the_columns_of_the_table_are_aligned() {
     let table = map(&home.db(), &[]).expect_code(0).stdout;
     let lines: Vec<&str> = table.lines().collect();
     let column = lines[0].find("owners").unwrap();
-    for (line, owners) in lines[1..4].iter().zip(["everybody", "Bob", "Bob"]) {
+    for (line, owners) in lines[1..4].iter().zip(["everybody", "everybody", "Bob"]) {
         assert!(line[column..].starts_with(owners), "{table}");
     }
     assert_eq!(lines[5], "3 things: 0 by answer, 0 inferred, 3 worth a question.");
