@@ -59,7 +59,7 @@ pub struct EvidenceParameters {
     /// The looks term of the bare formula: the same for a thing that looks exactly alike, also below 1. 0 switches the term off.
     pub looks: f64,
     /// The class term: how probable it is that the thing follows what common sense expects of its class in this
-    /// household. 0 switches the term off.
+    /// household, unless the home shows that its things mostly do. 0 switches the term off.
     pub common_sense: f64,
     /// The class term where a language model speaks in place of the file of classes: how probable it is that the
     /// thing follows the model's common sense. With .25 a model that is sure of one person of three makes that
