@@ -34,7 +34,7 @@ pub(super) struct Evenness {
     pub(super) borrowers: Option<f64>,
 }
 
-/// Homes in which anybody borrows anything, and then, from [`FRIENDS`] on, those in which the same person borrows the same
+/// Homes in which anybody borrows anything, and then, from [`SAME_BORROWERS`] on, those in which the same person borrows the same
 /// thing again.
 pub(super) const EVENNESS: [Evenness; 4] = [
     Evenness { owners: 8.0, borrowers: None },
@@ -44,7 +44,7 @@ pub(super) const EVENNESS: [Evenness; 4] = [
 ];
 
 /// See [`EVENNESS`].
-const FRIENDS: usize = 2;
+const SAME_BORROWERS: usize = 2;
 
 /// The places in [`EVENNESS`] by which a thing that changed hands was used: where anybody borrows, and in other homes. Both
 /// its pasts are short, so that the loosest of either does.
@@ -148,6 +148,6 @@ impl Habits {
 
     /// The place of the account of a change of hands among its kinds.
     pub(super) fn changed(&self) -> usize {
-        self.lending * LOOSEST.len() + usize::from(self.evenness >= FRIENDS)
+        self.lending * LOOSEST.len() + usize::from(self.evenness >= SAME_BORROWERS)
     }
 }
