@@ -63,11 +63,8 @@ pub(super) fn logarithms(
         })
         .collect();
     let kept = (0..MISTAKEN.len()).map(|mistaken| of_sets.iter().map(|of_set| of_set[mistaken]).collect());
-    let lent = (0..LENDING.len())
-        .flat_map(|lending| (0..EVENNESS.len()).map(move |even| (lending, even)))
-        .map(|(lending, even)| {
-            sets.iter().map(|&set| counting.log_likelihood(&counts, set, lending, even)).collect()
-        });
+    let every_evenness: [usize; EVENNESS.len()] = std::array::from_fn(|place| place);
+    let lent = counting.log_likelihoods(&counts, sets, &every_evenness);
     let changed = match parameters.change_of_hands > 0.0 && users.len() > 1 && members > 1 {
         true => changed_hands(users, candidates, &counting),
         false => Vec::new(),
@@ -157,6 +154,8 @@ struct Counting {
     lending: Vec<LendingTable>,
     /// For each of [`EVENNESS`].
     evenness: Vec<EvennessTable>,
+    /// ln i for every number of people i.
+    logarithms: Vec<f64>,
 }
 
 struct EvennessTable {
@@ -221,39 +220,77 @@ impl Counting {
             owners: split(owners),
             borrowers: borrowers.map(split),
         });
-        Self { members, lending: lending.into(), evenness: evenness.into() }
+        let logarithms = (0..=members).map(|people| log(people as f64)).collect();
+        Self { members, lending: lending.into(), evenness: evenness.into(), logarithms }
     }
 
-    /// ln p(c | S), as [`super::super::log_likelihood`] has it. Where the same people borrow the same thing again, its
-    /// `−m ln(n−k)` is the split of m sessions among n−k borrowers.
-    fn log_likelihood(&self, counts: &[usize], owners: OwnerSet, lending: usize, evenness: usize) -> f64 {
-        let (mut own, mut all) = (0, 0);
+    /// ln p(c | S) of every set, as [`super::super::log_likelihood`] has it, for each of [`LENDING`] and then of some of
+    /// [`EVENNESS`]. Where the same people borrow the same thing again, `−m ln(n−k)` is the split of m sessions among n−k
+    /// borrowers.
+    fn log_likelihoods(&self, counts: &[usize], sets: &[OwnerSet], evenness: &[usize]) -> Vec<Vec<f64>> {
+        let all = counts.iter().sum();
+        let own_use: Vec<usize> = sets
+            .iter()
+            .map(|&set| {
+                counts.iter().enumerate().filter(|&(place, _)| contains(set, place)).map(|(_, c)| c).sum()
+            })
+            .collect();
+        let divided: Vec<Vec<[f64; 2]>> = evenness
+            .iter()
+            .map(|&place| {
+                let table = &self.evenness[place];
+                sets.iter()
+                    .zip(&own_use)
+                    .map(|(&set, &own)| self.divided(table, counts, set, own, all))
+                    .collect()
+            })
+            .collect();
+        let of_lending = |table: &LendingTable| {
+            let lent: Vec<f64> =
+                sets.iter().zip(&own_use).map(|(set, &own)| self.lent(table, set.len(), own, all)).collect();
+            let sums = divided.iter().map(|divided| {
+                lent.iter()
+                    .zip(divided)
+                    .map(|(lent, [borrowers, owners])| lent + borrowers + owners)
+                    .collect()
+            });
+            sums.collect::<Vec<Vec<f64>>>()
+        };
+        self.lending.iter().flat_map(of_lending).collect()
+    }
+
+    /// Which sessions are of owners, and which of borrowers.
+    fn lent(&self, table: &LendingTable, owners: usize, own: usize, all: usize) -> f64 {
+        match owners < self.members {
+            true => table.borrowed.at(all - own) + table.own_use.at(own) - table.all.at(all),
+            false => 0.0,
+        }
+    }
+
+    /// Which of the borrowers, and which of the owners.
+    fn divided(
+        &self,
+        table: &EvennessTable,
+        counts: &[usize],
+        owners: OwnerSet,
+        own: usize,
+        all: usize,
+    ) -> [f64; 2] {
         let (mut of_owners, mut of_borrowers) = (0.0, 0.0);
-        let EvennessTable { owners: among_owners, borrowers: among_borrowers } = &self.evenness[evenness];
         for (place, &count) in counts.iter().enumerate() {
-            all += count;
             if contains(owners, place) {
-                own += count;
-                of_owners += among_owners.share(count);
-            } else if let Some(split) = among_borrowers {
+                of_owners += table.owners.share(count);
+            } else if let Some(split) = &table.borrowers {
                 of_borrowers += split.share(count);
             }
         }
-        let owner_count = owners.len();
-        let mut log_probability = 0.0;
-        if owner_count < self.members {
-            let table = &self.lending[lending];
-            let (others, borrowed) = (self.members - owner_count, all - own);
-            log_probability += table.borrowed.at(borrowed) + table.own_use.at(own) - table.all.at(all);
-            log_probability += match among_borrowers {
-                None => -(borrowed as f64 * log(others as f64)),
-                Some(split) => of_borrowers - split.all(others, borrowed),
-            };
-        }
-        if owner_count > 1 {
-            log_probability += of_owners - among_owners.all(owner_count, own);
-        }
-        log_probability
+        let (owners, others, borrowed) = (owners.len(), self.members - owners.len(), all - own);
+        let among_borrowers = match &table.borrowers {
+            _ if others == 0 => 0.0,
+            None => -(borrowed as f64 * self.logarithms[others]),
+            Some(split) => of_borrowers - split.all(others, borrowed),
+        };
+        [among_borrowers, if owners > 1 { of_owners - table.owners.all(owners, own) } else { 0.0 }]
     }
 }
 
@@ -261,51 +298,68 @@ impl Counting {
 /// may have been before.
 fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) -> Vec<Vec<f64>> {
     let (sets, members) = (candidates.sets(), candidates.people());
-    let singles = (0..members).filter_map(UserIndex::new).map(OwnerSet::single);
     let everybody: OwnerSet = (0..members).filter_map(UserIndex::new).collect();
-    let before: Vec<(OwnerSet, f64)> = singles
-        .map(|single| (single, (1.0 - EVERYBODYS_BEFORE) / members as f64))
-        .chain([(everybody, EVERYBODYS_BEFORE)])
-        .collect();
+    let singles = (0..members).filter_map(UserIndex::new).map(OwnerSet::single);
+    let before: Vec<OwnerSet> = singles.chain([everybody]).collect();
     let cuts = cuts(users.len());
-    (0..LENDING.len())
-        .flat_map(|lending| LOOSEST.map(|evenness| (lending, evenness)))
-        .map(|(lending, evenness)| {
-            let mut sums = vec![Vec::with_capacity(cuts.len()); sets.len()];
-            for &cut in &cuts {
-                let (earlier, later) = users.split_at(cut);
-                let (earlier, later) = (counts_of(earlier, members), counts_of(later, members));
-                let past: Vec<f64> = before
-                    .iter()
-                    .map(|&(set, _)| counting.log_likelihood(&earlier, set, lending, evenness))
-                    .collect();
-                let largest = past.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let weighed: Vec<(OwnerSet, f64, f64)> = before
-                    .iter()
-                    .zip(&past)
-                    .map(|(&(set, prior), past)| (set, prior, prior * exp(past - largest)))
-                    .collect();
-                let log_mean_of = |left_out: Option<OwnerSet>| {
-                    let others = weighed.iter().filter(|&&(other, ..)| Some(other) != left_out);
-                    let (weight, weights) = others
-                        .fold((0.0, 0.0), |(weight, weights), &(_, prior, of_it)| {
-                            (weight + of_it, weights + prior)
-                        });
-                    largest + log(weight / weights)
-                };
-                let of_all = log_mean_of(None);
-                for (&set, sum) in sets.iter().zip(&mut sums) {
-                    // Only one person, or everybody, can have owned it before.
-                    let of_others = match set.len() == 1 || set == everybody {
-                        true => log_mean_of(Some(set)),
-                        false => of_all,
-                    };
-                    sum.push(of_others + counting.log_likelihood(&later, set, lending, evenness));
-                }
+    let accounts = LENDING.len() * LOOSEST.len();
+    let mut sums = vec![vec![Vec::with_capacity(cuts.len()); sets.len()]; accounts];
+    for &cut in &cuts {
+        let (earlier, later) = users.split_at(cut);
+        let past = counting.log_likelihoods(&counts_of(earlier, members), &before, &LOOSEST);
+        let since = counting.log_likelihoods(&counts_of(later, members), sets, &LOOSEST);
+        for ((past, since), sums) in past.iter().zip(since).zip(&mut sums) {
+            let past = Past::new(&before, past);
+            for ((&set, since), sum) in sets.iter().zip(since).zip(sums) {
+                sum.push(past.of_others(set) + since);
             }
-            sums.iter().map(|sum| log_mean(sum)).collect()
-        })
-        .collect()
+        }
+    }
+    sums.iter().map(|sums| sums.iter().map(|sum| log_mean(sum)).collect()).collect()
+}
+
+/// How well the use before a change of hands is explained by those whose the thing may have been: one person's, or
+/// everybody's.
+struct Past {
+    /// ln of the mean over all of them.
+    of_all: f64,
+    /// For each of them, ln of the mean over the others.
+    without: Vec<(OwnerSet, f64)>,
+}
+
+impl Past {
+    /// With the natural logarithms of how well each explains it, the last of which is everybody.
+    fn new(before: &[OwnerSet], log_likelihoods: &[f64]) -> Self {
+        let largest = log_likelihoods.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let members = before.len() - 1;
+        let weighed: Vec<(f64, f64)> = log_likelihoods
+            .iter()
+            .enumerate()
+            .map(|(place, logarithm)| {
+                let prior = match place == members {
+                    true => EVERYBODYS_BEFORE,
+                    false => (1.0 - EVERYBODYS_BEFORE) / members as f64,
+                };
+                (prior, prior * exp(logarithm - largest))
+            })
+            .collect();
+        let log_mean_without = |left_out: Option<usize>| {
+            let others = weighed.iter().enumerate().filter(|&(place, _)| Some(place) != left_out);
+            let (weight, weights) = others
+                .fold((0.0, 0.0), |(weight, weights), (_, (prior, of_it))| (weight + of_it, weights + prior));
+            largest + log(weight / weights)
+        };
+        Self {
+            of_all: log_mean_without(None),
+            without: (0..before.len()).map(|place| (before[place], log_mean_without(Some(place)))).collect(),
+        }
+    }
+
+    /// ln of the mean over all that are not these owners.
+    fn of_others(&self, owners: OwnerSet) -> f64 {
+        let mut others = self.without.iter();
+        others.find(|&&(set, _)| set == owners).map_or(self.of_all, |&(_, without)| without)
+    }
 }
 
 /// The places at which a history of so many sessions is cut in two, none of them empty.
