@@ -1,6 +1,7 @@
 //! An episode that was imported into a database.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use tempfile::TempDir;
 
@@ -8,10 +9,11 @@ use crate::binaries::Program;
 use crate::episode::EpisodeBuilder;
 use crate::server::{Era, ServerProcess};
 
-/// A home in a database file, made by `coin-server import`. The file is removed at the end.
+/// A home in a database file, made by `coin-server import`. The file is removed when the home and all its servers
+/// are gone.
 #[derive(Debug)]
 pub struct Home {
-    folder: TempDir,
+    folder: Arc<TempDir>,
 }
 
 impl Home {
@@ -24,7 +26,7 @@ impl Home {
     /// Imports an episode's folder.
     #[track_caller]
     pub fn import(episode: &Path) -> Self {
-        let home = Self { folder: tempfile::tempdir().expect("a temporary folder can be made") };
+        let home = Self { folder: Arc::new(tempfile::tempdir().expect("a temporary folder can be made")) };
         Program::new("coin-server")
             .args(["import".as_ref(), "--episode".as_ref(), episode.as_os_str()])
             .args(["--db".as_ref(), home.db().as_os_str()])
@@ -52,6 +54,6 @@ impl Home {
     /// A server of this home.
     #[track_caller]
     pub fn server_of(&self, era: Era) -> ServerProcess {
-        ServerProcess::start(["--db".as_ref(), self.db().as_os_str()], era)
+        ServerProcess::start(["--db".as_ref(), self.db().as_os_str()], era).in_folder(&self.folder)
     }
 }

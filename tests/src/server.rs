@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 use crate::answer::{RpcError, ToolAnswer};
 use crate::binaries::{Collected, binary};
@@ -48,6 +50,7 @@ pub struct ServerProcess {
     last_id: u64,
     early: BTreeMap<u64, Value>,
     tools: OnceCell<Vec<Value>>,
+    _folder: Option<Arc<TempDir>>,
 }
 
 impl ServerProcess {
@@ -88,7 +91,24 @@ impl ServerProcess {
                 }
             }
         });
-        Self { child, stdin, lines, stderr, era, last_id: 0, early: BTreeMap::new(), tools: OnceCell::new() }
+        Self {
+            child,
+            stdin,
+            lines,
+            stderr,
+            era,
+            last_id: 0,
+            early: BTreeMap::new(),
+            tools: OnceCell::new(),
+            _folder: None,
+        }
+    }
+
+    /// Keeps the folder of the server's database for as long as the server runs: it may still be opening it when
+    /// its home goes out of scope.
+    pub(crate) fn in_folder(mut self, folder: &Arc<TempDir>) -> Self {
+        self._folder = Some(Arc::clone(folder));
+        self
     }
 
     /// The server's process.
