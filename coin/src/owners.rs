@@ -77,7 +77,12 @@ impl OwnerSet {
 
     /// The members in order.
     pub fn iter(self) -> impl Iterator<Item = UserIndex> {
-        (0..crate::roster::MAX_USERS).filter_map(UserIndex::new).filter(move |&user| self.contains(user))
+        let mut rest = self.0;
+        std::iter::from_fn(move || {
+            let first = UserIndex::new(rest.trailing_zeros() as usize)?;
+            rest &= rest - 1;
+            Some(first)
+        })
     }
 }
 

@@ -25,7 +25,7 @@ pub use prior::{Opinion, SizePrior};
 
 use crate::owners::{OwnerSet, OwnerSetDistribution};
 use crate::roster::UserIndex;
-use prior::{Candidates, logarithms, with_relatives};
+use prior::{Candidates, OwnPrior, logarithms, with_relatives};
 
 /// How probable it is that a person's answer is right: people are mistaken, misunderstood, or joke.
 const TRUST: f64 = 0.95;
@@ -196,7 +196,7 @@ pub fn posterior(
     let candidates = Candidates::of((0..sessions.len()).filter_map(UserIndex::new).collect());
     let couplings: Vec<(OwnerSet, f64)> =
         relatives.iter().map(|relative| (relative.owners, parameters.coupling(relative.relation))).collect();
-    let mut prior = candidates.own(opinion, parameters.sizes(), parameters);
+    let mut prior = OwnPrior::new(&candidates, opinion).of_sizes(parameters.sizes(), parameters);
     with_relatives(candidates.sets(), &mut prior, &couplings);
     OwnerSetDistribution::from_log_weights(
         candidates

@@ -83,89 +83,116 @@ impl Candidates {
     /// π(S) for every set: by the number of owners, evenly within a number. Where there is no size between one and
     /// everyone, the two are scaled up to 1.
     pub(super) fn by_size(&self, sizes: SizePrior) -> Vec<f64> {
-        let shares = SizeShares::of(&self.sets, self.people.len());
-        self.sets.iter().map(|set| shares.of_size(sizes, set.len()) / shares.counts[set.len()]).collect()
+        SizeShares::of(&self.sets, self.people.len()).by_size(&self.sets, sizes)
     }
+}
 
-    /// The prior of every set with an opinion: `(1 − w)·π(S) + w·e(S)`, where e is what is expected and w the weight of
-    /// that term; w is 0 where nothing is expected. As a mixture it excludes no owner set, however sure the opinion is.
-    /// Where a model's scores leave no set possible, such as where all are 0, they say nothing.
-    pub(super) fn own(
-        &self,
-        opinion: Opinion<'_>,
-        sizes: SizePrior,
-        parameters: &EvidenceParameters,
-    ) -> Vec<f64> {
-        let by_size = self.by_size(sizes);
-        let (weight, expected) = match opinion {
-            Opinion::None => return by_size,
+/// What is thought of a thing by itself, as far as it is the same however many owners things have in the home.
+pub(super) struct OwnPrior<'a> {
+    candidates: &'a Candidates,
+    shares: SizeShares,
+    expected: Expected,
+}
+
+/// What an opinion expects.
+enum Expected {
+    Nothing,
+    /// By the file of classes: e(S) of every set.
+    OfClass(Vec<f64>),
+    /// By a language model: for every set what its scores multiply π(S) by.
+    OfModel(Vec<f64>),
+    /// By the surest opinion of a language model: e(S) of every set.
+    Certain(Vec<f64>),
+}
+
+impl<'a> OwnPrior<'a> {
+    /// With this opinion. One that does not tell of all candidates says nothing.
+    pub(super) fn new(candidates: &'a Candidates, opinion: Opinion<'_>) -> Self {
+        let shares = SizeShares::of(&candidates.sets, candidates.people.len());
+        let people = candidates.people.iter();
+        let expected = match opinion {
+            Opinion::None => Expected::Nothing,
             Opinion::OfClass(expectation) => {
-                let suitability: Option<Vec<f64>> = self
-                    .people
-                    .iter()
-                    .map(|person| expectation.suitability.get(person.place()).copied())
-                    .collect();
-                let Some(suitability) = suitability else { return by_size };
-                (parameters.common_sense, self.of_class(expectation, &suitability))
+                let suitability: Option<Vec<f64>> =
+                    people.map(|person| expectation.suitability.get(person.place()).copied()).collect();
+                suitability.map_or(Expected::Nothing, |suitability| {
+                    Expected::OfClass(of_class(&candidates.sets, &shares, expectation, &suitability))
+                })
             }
             Opinion::OfModel(scores) => {
                 let scores: Option<Vec<f64>> =
-                    self.people.iter().map(|person| Some(scores.get(person.place())?.value())).collect();
-                let Some(expected) = scores.and_then(|scores| self.of_model(&scores, &by_size)) else {
-                    return by_size;
-                };
-                (parameters.language_model, expected)
+                    people.map(|person| Some(scores.get(person.place())?.value())).collect();
+                match scores {
+                    Some(scores) if scores.len() > 1 => {
+                        Expected::OfModel(candidates.sets.iter().map(|&set| odds(&scores, set)).collect())
+                    }
+                    _ => Expected::Nothing,
+                }
             }
             Opinion::Certain(owners) => {
-                let owners = self.narrowed(owners);
-                let expected = self.sets.iter().map(|&set| f64::from(u8::from(Some(set) == owners)));
-                (parameters.language_model, expected.collect())
+                let owners = candidates.narrowed(owners);
+                let expected = candidates.sets.iter().map(|&set| f64::from(u8::from(Some(set) == owners)));
+                Expected::Certain(expected.collect())
             }
         };
-        by_size
-            .iter()
-            .zip(&expected)
-            .map(|(by_size, expected)| (1.0 - weight) * by_size + weight * expected)
-            .collect()
+        Self { candidates, shares, expected }
     }
 
-    /// What the file of classes expects: by size, and within a size in proportion to how well the members are suited
-    /// together.
-    fn of_class(&self, expectation: &Expectation, suitability: &[f64]) -> Vec<f64> {
-        let shares = SizeShares::of(&self.sets, self.people.len());
-        let sizes = SizePrior { single: expectation.single, everyone: expectation.everyone };
-        let suited = |set: OwnerSet| set.iter().map(|place| suitability[place.place()]).product::<f64>();
-        let mut sums = vec![0.0; self.people.len() + 1];
-        for &set in &self.sets {
-            sums[set.len()] += suited(set);
-        }
-        self.sets
-            .iter()
-            .map(|&set| shares.of_size(sizes, set.len()) * suited(set) / sums[set.len()])
-            .collect()
-    }
-
-    /// A language model's scores as weights of owner sets: `e(S) ∝ π(S) · ∏_{u∈S} s_u · ∏_{u∉S} (1−s_u)`. A model is
-    /// told to give one half where nothing speaks for or against a member, so the scores are odds against that: one
-    /// half for everybody says nothing. `None` where no set is possible.
-    fn of_model(&self, scores: &[f64], by_size: &[f64]) -> Option<Vec<f64>> {
-        if self.people.len() < 2 {
-            return None;
-        }
-        let odds = |set: OwnerSet| {
-            let odds = scores.iter().enumerate().map(|(place, score)| {
-                match UserIndex::new(place).is_some_and(|user| set.contains(user)) {
-                    true => *score,
-                    false => 1.0 - score,
-                }
-            });
-            odds.product::<f64>()
+    /// The prior of every set: `(1 − w)·π(S) + w·e(S)`, where e is what is expected and w the weight of that term; w is 0
+    /// where nothing is expected. As a mixture it excludes no owner set, however sure the opinion is. A language model's
+    /// scores expect `e(S) ∝ π(S) · ∏_{u∈S} s_u · ∏_{u∉S} (1−s_u)`; where they leave no set possible, such as where all
+    /// are 0, they say nothing.
+    pub(super) fn of_sizes(&self, sizes: SizePrior, parameters: &EvidenceParameters) -> Vec<f64> {
+        let by_size = self.shares.by_size(&self.candidates.sets, sizes);
+        let mixed = |weight: f64, expected: &[f64]| {
+            let both = by_size.iter().zip(expected);
+            both.map(|(by_size, expected)| (1.0 - weight) * by_size + weight * expected).collect()
         };
-        let expected: Vec<f64> =
-            self.sets.iter().zip(by_size).map(|(&set, prior)| prior * odds(set)).collect();
-        let sum: f64 = expected.iter().sum();
-        (sum > 0.0).then(|| expected.iter().map(|weight| weight / sum).collect())
+        match &self.expected {
+            Expected::Nothing => by_size,
+            Expected::OfClass(expected) => mixed(parameters.common_sense, expected),
+            Expected::Certain(expected) => mixed(parameters.language_model, expected),
+            Expected::OfModel(odds) => {
+                let weights: Vec<f64> = by_size.iter().zip(odds).map(|(prior, odds)| prior * odds).collect();
+                let sum: f64 = weights.iter().sum();
+                if sum <= 0.0 {
+                    return by_size;
+                }
+                let expected: Vec<f64> = weights.iter().map(|weight| weight / sum).collect();
+                mixed(parameters.language_model, &expected)
+            }
+        }
     }
+}
+
+/// What the file of classes expects: by size, and within a size in proportion to how well the members are suited
+/// together.
+fn of_class(
+    sets: &[OwnerSet],
+    shares: &SizeShares,
+    expectation: &Expectation,
+    suitability: &[f64],
+) -> Vec<f64> {
+    let sizes = SizePrior { single: expectation.single, everyone: expectation.everyone };
+    let suited: Vec<f64> =
+        sets.iter().map(|set| set.iter().map(|place| suitability[place.place()]).product()).collect();
+    let mut sums = vec![0.0; shares.counts.len()];
+    sets.iter().zip(&suited).for_each(|(set, suited)| sums[set.len()] += suited);
+    let of_set =
+        |(set, suited): (&OwnerSet, &f64)| shares.of_size(sizes, set.len()) * suited / sums[set.len()];
+    sets.iter().zip(&suited).map(of_set).collect()
+}
+
+/// `∏_{u∈S} s_u · ∏_{u∉S} (1−s_u)`. A model is told to give one half where nothing speaks for or against a member, so its
+/// scores are odds against that: one half for everybody says nothing.
+fn odds(scores: &[f64], set: OwnerSet) -> f64 {
+    let odds = scores.iter().enumerate().map(|(place, score)| {
+        match UserIndex::new(place).is_some_and(|user| set.contains(user)) {
+            true => *score,
+            false => 1.0 - score,
+        }
+    });
+    odds.product()
 }
 
 /// How a probability of sizes is spread over the sets that there are.
@@ -184,6 +211,13 @@ impl SizeShares {
         }
         let sizes_between = (2..members).filter(|&size| counts[size] > 0.0).count();
         Self { counts, members, sizes_between }
+    }
+
+    /// π(S) for every set.
+    fn by_size(&self, sets: &[OwnerSet], sizes: SizePrior) -> Vec<f64> {
+        let of_one = |(size, &count): (usize, &f64)| self.of_size(sizes, size) / count;
+        let of_one: Vec<f64> = self.counts.iter().enumerate().map(of_one).collect();
+        sets.iter().map(|set| of_one[set.len()]).collect()
     }
 
     /// The probability of all sets of a size together.

@@ -54,14 +54,9 @@ pub(super) fn logarithms(
     let (sets, members) = (candidates.sets(), candidates.people());
     let counting = Counting::new(users.len(), members);
     let counts = counts_of(users, members);
-    let turns = [1.0, LOOSELY].map(|share| Turns::new(share * parameters.turns));
-    let of_sets: Vec<[f64; MISTAKEN.len()]> = sets
-        .iter()
-        .map(|&set| {
-            let [strict, loose] = turns.each_ref().map(|turns| turns.log_likelihood(users, set, members));
-            std::array::from_fn(|mistaken| log_mean(&[strict[mistaken], loose[mistaken]]))
-        })
-        .collect();
+    let turns = Turns::new(parameters.turns);
+    let of_sets: Vec<[f64; MISTAKEN.len()]> =
+        sets.iter().map(|&set| turns.log_likelihood(users, set, members)).collect();
     let kept = (0..MISTAKEN.len()).map(|mistaken| of_sets.iter().map(|of_set| of_set[mistaken]).collect());
     let every_evenness: [usize; EVENNESS.len()] = std::array::from_fn(|place| place);
     let lent = counting.log_likelihoods(&counts, sets, &every_evenness);
@@ -83,36 +78,47 @@ fn counts_of(users: &[usize], members: usize) -> Vec<usize> {
 /// The law of turns: of the owners, who has used a thing c times is the next one with a probability in proportion to
 /// exp(−β·c), so that nobody falls far behind. The paper's Appendix D has the limit of large β; β = 0 is chance.
 struct Turns {
-    /// exp(−β·d) for a lead d.
-    of_lead: Vec<f64>,
+    /// exp(−β·d) for a lead d, where turns are taken strictly and loosely.
+    of_lead: [Vec<f64>; 2],
 }
 
 impl Turns {
     fn new(beta: f64) -> Self {
-        Self { of_lead: (0..=FAR_AHEAD).map(|lead| exp(-beta * lead as f64)).collect() }
+        let of_lead = |share: f64| (0..=FAR_AHEAD).map(|lead| exp(-share * beta * lead as f64)).collect();
+        Self { of_lead: [1.0, LOOSELY].map(of_lead) }
     }
 
     /// Σ ln((1−e)·q(u) + e/n) over the sessions, where q is the law of turns among the owners, and a mistaken sighting,
-    /// of probability e, names anybody. For each of [`MISTAKEN`].
+    /// of probability e, names anybody. For each of [`MISTAKEN`], the mean over strict and loose turns.
     fn log_likelihood(&self, users: &[usize], owners: OwnerSet, members: usize) -> [f64; MISTAKEN.len()] {
-        let places: Vec<usize> = owners.iter().map(UserIndex::place).collect();
-        let mut used: Vec<usize> = vec![0; places.len()];
-        let mut products = MISTAKEN.map(|_| LogProduct::default());
-        for user in users {
-            let turn = places.iter().position(|place| place == user).map_or(0.0, |owner| {
-                let fewest = used.iter().copied().min().unwrap_or(0);
-                let weight = |count: usize| self.of_lead[(count - fewest).min(FAR_AHEAD)];
-                let all: f64 = used.iter().map(|&count| weight(count)).sum();
-                let turn = weight(used[owner]) / all;
-                used[owner] += 1;
-                turn
-            });
-            for (product, mistaken) in products.iter_mut().zip(MISTAKEN) {
-                product.times((1.0 - mistaken) * turn + mistaken / members as f64);
+        let mut among_owners = vec![None; members];
+        owners.iter().enumerate().for_each(|(place, owner)| among_owners[owner.place()] = Some(place));
+        let mut used: Vec<usize> = vec![0; owners.len()];
+        let mut products = MISTAKEN.map(|_| self.of_lead.each_ref().map(|_| LogProduct::default()));
+        for &user in users {
+            let turn = match among_owners[user] {
+                Some(owner) => {
+                    let turn = self.of_lead.each_ref().map(|of_lead| next_turn(of_lead, &used, owner));
+                    used[owner] += 1;
+                    turn
+                }
+                None => [0.0; 2],
+            };
+            for (products, mistaken) in products.iter_mut().zip(MISTAKEN) {
+                for (product, turn) in products.iter_mut().zip(turn) {
+                    product.times((1.0 - mistaken) * turn + mistaken / members as f64);
+                }
             }
         }
-        products.map(LogProduct::logarithm)
+        products.map(|products| log_mean(&products.map(LogProduct::logarithm)))
     }
+}
+
+/// How probable it is that an owner is the next one, of those who have used the thing so many times.
+fn next_turn(of_lead: &[f64], used: &[usize], owner: usize) -> f64 {
+    let fewest = used.iter().copied().min().unwrap_or(0);
+    let weight = |count: usize| of_lead[(count - fewest).min(FAR_AHEAD)];
+    weight(used[owner]) / used.iter().map(|&count| weight(count)).sum::<f64>()
 }
 
 /// The logarithm of a product of many probabilities, which takes few logarithms.
@@ -232,7 +238,8 @@ impl Counting {
         let own_use: Vec<usize> = sets
             .iter()
             .map(|&set| {
-                counts.iter().enumerate().filter(|&(place, _)| contains(set, place)).map(|(_, c)| c).sum()
+                let of_owner = |(place, &count)| if contains(set, place) { count } else { 0 };
+                counts.iter().enumerate().map(of_owner).sum()
             })
             .collect();
         let divided: Vec<Vec<[f64; 2]>> = evenness
@@ -278,10 +285,10 @@ impl Counting {
     ) -> [f64; 2] {
         let (mut of_owners, mut of_borrowers) = (0.0, 0.0);
         for (place, &count) in counts.iter().enumerate() {
-            if contains(owners, place) {
-                of_owners += table.owners.share(count);
-            } else if let Some(split) = &table.borrowers {
-                of_borrowers += split.share(count);
+            let of_owner = if contains(owners, place) { table.owners.share(count) } else { 0.0 };
+            of_owners += of_owner;
+            if let Some(split) = &table.borrowers {
+                of_borrowers += if contains(owners, place) { 0.0 } else { split.share(count) };
             }
         }
         let (owners, others, borrowed) = (owners.len(), self.members - owners.len(), all - own);
@@ -301,21 +308,23 @@ fn changed_hands(users: &[usize], candidates: &Candidates, counting: &Counting) 
     let everybody: OwnerSet = (0..members).filter_map(UserIndex::new).collect();
     let singles = (0..members).filter_map(UserIndex::new).map(OwnerSet::single);
     let before: Vec<OwnerSet> = singles.chain([everybody]).collect();
+    let place_before: Vec<Option<usize>> =
+        sets.iter().map(|set| before.iter().position(|owners| owners == set)).collect();
     let cuts = cuts(users.len());
-    let accounts = LENDING.len() * LOOSEST.len();
-    let mut sums = vec![vec![Vec::with_capacity(cuts.len()); sets.len()]; accounts];
-    for &cut in &cuts {
+    let mut logarithms = vec![vec![0.0; sets.len() * cuts.len()]; LENDING.len() * LOOSEST.len()];
+    for (place, &cut) in cuts.iter().enumerate() {
         let (earlier, later) = users.split_at(cut);
         let past = counting.log_likelihoods(&counts_of(earlier, members), &before, &LOOSEST);
         let since = counting.log_likelihoods(&counts_of(later, members), sets, &LOOSEST);
-        for ((past, since), sums) in past.iter().zip(since).zip(&mut sums) {
-            let past = Past::new(&before, past);
-            for ((&set, since), sum) in sets.iter().zip(since).zip(sums) {
-                sum.push(past.of_others(set) + since);
+        for ((past, since), of_account) in past.iter().zip(since).zip(&mut logarithms) {
+            let past = Past::new(past);
+            let of_sets = of_account.chunks_exact_mut(cuts.len());
+            for ((of_cuts, &owners), since) in of_sets.zip(&place_before).zip(since) {
+                of_cuts[place] = past.of_others(owners) + since;
             }
         }
     }
-    sums.iter().map(|sums| sums.iter().map(|sum| log_mean(sum)).collect()).collect()
+    logarithms.iter().map(|of_account| of_account.chunks_exact(cuts.len()).map(log_mean).collect()).collect()
 }
 
 /// How well the use before a change of hands is explained by those whose the thing may have been: one person's, or
@@ -324,14 +333,14 @@ struct Past {
     /// ln of the mean over all of them.
     of_all: f64,
     /// For each of them, ln of the mean over the others.
-    without: Vec<(OwnerSet, f64)>,
+    without: Vec<f64>,
 }
 
 impl Past {
     /// With the natural logarithms of how well each explains it, the last of which is everybody.
-    fn new(before: &[OwnerSet], log_likelihoods: &[f64]) -> Self {
+    fn new(log_likelihoods: &[f64]) -> Self {
         let largest = log_likelihoods.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let members = before.len() - 1;
+        let members = log_likelihoods.len() - 1;
         let weighed: Vec<(f64, f64)> = log_likelihoods
             .iter()
             .enumerate()
@@ -351,14 +360,13 @@ impl Past {
         };
         Self {
             of_all: log_mean_without(None),
-            without: (0..before.len()).map(|place| (before[place], log_mean_without(Some(place)))).collect(),
+            without: (0..=members).map(|place| log_mean_without(Some(place))).collect(),
         }
     }
 
-    /// ln of the mean over all that are not these owners.
-    fn of_others(&self, owners: OwnerSet) -> f64 {
-        let mut others = self.without.iter();
-        others.find(|&&(set, _)| set == owners).map_or(self.of_all, |&(_, without)| without)
+    /// ln of the mean over all but the owners at a place among them, or over all.
+    fn of_others(&self, owners: Option<usize>) -> f64 {
+        owners.map_or(self.of_all, |owners| self.without[owners])
     }
 }
 

@@ -2,12 +2,15 @@
 
 use libm::log;
 
-use super::super::prior::{Candidates, Opinion, SizePrior, logarithms, with_relatives};
+use super::super::prior::{Candidates, Opinion, OwnPrior, SizePrior, logarithms, with_relatives};
 use super::super::{EvidenceParameters, TRUST};
 use super::habits::{EVENNESS, FOLLOWED, Habits, LENDING, MISTAKEN, OPINIONS, SIZES};
 use super::likelihood::Accounts;
 use super::{Thing, Use};
 use crate::owners::OwnerSet;
+
+/// For each of [`SIZES`] and then of [`OPINIONS`] there is a prior.
+const PRIORS: usize = SIZES.len() * OPINIONS;
 
 /// A thing with the prior that what is told gives it.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,8 +33,8 @@ pub(super) struct Basis {
 enum Weights {
     /// Its belief depends on the habits of the home.
     ByHabits {
-        /// For each of [`SIZES`] and then of [`OPINIONS`].
-        priors: Vec<Vec<f64>>,
+        /// Of every set, its probability under each of [`PRIORS`].
+        priors: Vec<[f64; PRIORS]>,
         /// ln p(use, answer | habits) up to a constant, at every point of the grid.
         log_evidence: Vec<f64>,
     },
@@ -47,18 +50,23 @@ impl Weighed {
         parameters: &EvidenceParameters,
     ) -> Self {
         let candidates = &thing.candidates;
+        let own = OwnPrior::new(candidates, opinion);
         let prior = |sizes: SizePrior, parameters: &EvidenceParameters| {
-            let mut prior = candidates.own(opinion, sizes, parameters);
+            let mut prior = own.of_sizes(sizes, parameters);
             with_relatives(candidates.sets(), &mut prior, &basis.couplings);
             prior
         };
         let weights = match &thing.use_of_it {
             Use::Accounts(accounts) => {
                 let weighed: [EvidenceParameters; OPINIONS] = [*parameters, followed(parameters)];
-                let priors: Vec<Vec<f64>> = SIZES
-                    .iter()
-                    .flat_map(|&sizes| weighed.each_ref().map(|parameters| prior(sizes, parameters)))
-                    .collect();
+                let mut priors = vec![[0.0; PRIORS]; candidates.sets().len()];
+                let all = SIZES.iter().flat_map(|&sizes| weighed.each_ref().map(|of| prior(sizes, of)));
+                for (place, prior) in all.enumerate() {
+                    priors
+                        .iter_mut()
+                        .zip(prior)
+                        .for_each(|(of_set, probability)| of_set[place] = probability);
+                }
                 let mixture = Mixture { candidates, accounts, priors: &priors, parameters };
                 let log_evidence = mixture.log_evidence(basis.answer);
                 Weights::ByHabits { priors, log_evidence }
@@ -86,11 +94,12 @@ impl Weighed {
     pub(super) fn prior(&self, habits: &[(Habits, f64)]) -> Vec<f64> {
         match &self.weights {
             Weights::ByHabits { priors, .. } => {
-                let mut shares = [0.0; SIZES.len() * OPINIONS];
+                let mut shares = [0.0; PRIORS];
                 habits.iter().for_each(|(habits, probability)| shares[habits.prior_place()] += probability);
-                let sets = 0..priors.first().map_or(0, Vec::len);
-                sets.map(|set| shares.iter().zip(priors).map(|(share, prior)| share * prior[set]).sum())
-                    .collect()
+                let mean = |of_set: &[f64; PRIORS]| {
+                    shares.iter().zip(of_set).map(|(share, prior)| share * prior).sum()
+                };
+                priors.iter().map(mean).collect()
             }
             Weights::Alone { prior, .. } => prior.clone(),
         }
@@ -128,7 +137,7 @@ fn followed(parameters: &EvidenceParameters) -> EvidenceParameters {
 struct Mixture<'a> {
     candidates: &'a Candidates,
     accounts: &'a Accounts,
-    priors: &'a [Vec<f64>],
+    priors: &'a [[f64; PRIORS]],
     parameters: &'a EvidenceParameters,
 }
 
@@ -138,25 +147,26 @@ impl Mixture<'_> {
         if self.accounts.changed.is_empty() { 0.0 } else { self.parameters.change_of_hands }
     }
 
-    fn joint(&self, habits: Habits) -> impl Iterator<Item = f64> {
+    /// π(S | h)·p(use | S, h) of the set at every place.
+    fn joint(&self, habits: Habits) -> impl Fn(usize) -> f64 {
         let kept = &self.accounts.kept[habits.mistaken];
         let lent = &self.accounts.lent[habits.lent()];
         let changed = self.accounts.changed.get(habits.changed());
         let change = self.change();
-        let prior = &self.priors[habits.prior_place()];
+        let (sets, priors, prior) = (self.candidates.sets(), self.priors, habits.prior_place());
         let (single, shared) = (habits.kept(1), habits.kept(2));
-        self.candidates.sets().iter().enumerate().map(move |(place, set)| {
-            let share = if set.len() == 1 { single } else { shared };
+        move |place| {
+            let share = if sets[place].len() == 1 { single } else { shared };
             let stayed = share * kept[place] + (1.0 - share) * lent[place];
             let moved = changed.map_or(0.0, |changed| changed[place]);
-            prior[place] * ((1.0 - change) * stayed + change * moved)
-        })
+            priors[place][prior] * ((1.0 - change) * stayed + change * moved)
+        }
     }
 
     fn belief(&self, habits: &[(Habits, f64)]) -> Vec<f64> {
         let mut belief = vec![0.0; self.candidates.sets().len()];
         for &(habits, probability) in habits {
-            let joint: Vec<f64> = self.joint(habits).collect();
+            let joint: Vec<f64> = (0..belief.len()).map(self.joint(habits)).collect();
             let all: f64 = joint.iter().sum();
             belief.iter_mut().zip(joint).for_each(|(sum, joint)| *sum += probability * joint / all);
         }
@@ -178,23 +188,24 @@ impl Mixture<'_> {
             }
             None => None,
         };
-        let sums: Vec<Sums> = self.priors.iter().map(|prior| self.sums(prior)).collect();
+        let sums = self.sums();
         Habits::all()
             .map(|habits| {
-                let all = sums[habits.prior_place()].mixed(habits, self.change());
-                match named.and_then(|place| self.joint(habits).nth(place)) {
-                    Some(named) => log(TRUST * named + (1.0 - TRUST) * all),
+                let all = sums.mixed(habits, self.change());
+                match named {
+                    Some(named) => log(TRUST * self.joint(habits)(named) + (1.0 - TRUST) * all),
                     None => log(all),
                 }
             })
             .collect()
     }
 
-    fn sums(&self, prior: &[f64]) -> Sums {
-        let of = |account: &Vec<f64>| -> [f64; 2] {
-            let mut sums = [0.0; 2];
-            for ((set, prior), account) in self.candidates.sets().iter().zip(prior).zip(account) {
-                sums[usize::from(set.len() > 1)] += prior * account;
+    fn sums(&self) -> Sums {
+        let of = |account: &Vec<f64>| -> SumsOfAccount {
+            let mut sums = [[0.0; PRIORS]; 2];
+            for ((set, priors), account) in self.candidates.sets().iter().zip(self.priors).zip(account) {
+                let of_sets = &mut sums[usize::from(set.len() > 1)];
+                of_sets.iter_mut().zip(priors).for_each(|(sum, prior)| *sum += prior * account);
             }
             sums
         };
@@ -206,14 +217,17 @@ impl Mixture<'_> {
     }
 }
 
-/// Σ π(S)·account(S) over the sets of one owner, and over the others.
+/// Σ π(S)·account(S) over the sets of one owner, and over the others, under each of [`PRIORS`].
+type SumsOfAccount = [[f64; PRIORS]; 2];
+
+/// The sums of every account.
 struct Sums {
     /// For each of [`MISTAKEN`].
-    kept: Vec<[f64; 2]>,
+    kept: Vec<SumsOfAccount>,
     /// For each of [`LENDING`] and then of [`EVENNESS`].
-    lent: Vec<[f64; 2]>,
+    lent: Vec<SumsOfAccount>,
     /// For each of [`LENDING`] and then of [`LOOSEST`], or nothing.
-    changed: Vec<[f64; 2]>,
+    changed: Vec<SumsOfAccount>,
 }
 
 impl Sums {
@@ -222,8 +236,9 @@ impl Sums {
             (self.kept.len(), self.lent.len()),
             (MISTAKEN.len(), LENDING.len() * EVENNESS.len())
         );
-        let (kept, lent) = (self.kept[habits.mistaken], self.lent[habits.lent()]);
-        let changed = self.changed.get(habits.changed()).copied().unwrap_or_default();
+        let under = |sums: &SumsOfAccount| sums.map(|of_sets| of_sets[habits.prior_place()]);
+        let (kept, lent) = (under(&self.kept[habits.mistaken]), under(&self.lent[habits.lent()]));
+        let changed = self.changed.get(habits.changed()).map(under).unwrap_or_default();
         [1, 2].iter().zip(kept).zip(lent).zip(changed).fold(0.0, |sum, (((&owners, kept), lent), changed)| {
             let share = habits.kept(owners);
             sum + (1.0 - change) * (share * kept + (1.0 - share) * lent) + change * changed
