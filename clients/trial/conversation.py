@@ -101,23 +101,23 @@ async def held(database: Path) -> str:
     transcript = Transcript()
     async with connect(Stdio(database), Era.MODERN) as client:
         transcript.heading("The assistant looks, is unsure and asks")
-        transcript.says("Bob", "Whose are the car keys?")
-        found = await transcript.calls(client, "list_objects", **{"class": "car keys"})
+        transcript.says("Bob", "Whose is the frying pan?")
+        found = await transcript.calls(client, "list_objects", **{"class": "frying pan"})
         thing = found["objects"][0]["id"]
         judgement = await transcript.calls(client, "whose_is", object_id=thing)
         assert not judgement["settled"], "the assistant must have a reason to ask"
         transcript.says("Assistant", f"{judgement['explanation']} That is not sure enough to go by, so I had better ask.")
-        client.person.content = {"owner": "Mary and Tom", "in_your_words": "They share these. I have my own."}
+        client.person.content = {"owner": "Mary and Tom", "in_your_words": "They share it. I only borrowed it."}
         answer = await transcript.calls(client, "ask_owner", object_id=thing)
         assert answer["status"] == "answered", answer
         transcript.says("Assistant", "Thank you. I will remember that.")
     async with connect(Stdio(database), Era.MODERN) as client:
         transcript.heading("Another day, in another conversation")
-        transcript.says("Tom", "Can I take the car keys?")
-        await transcript.calls(client, "list_objects", **{"class": "car keys"})
+        transcript.says("Tom", "May I lend the frying pan to a friend?")
+        await transcript.calls(client, "list_objects", **{"class": "frying pan"})
         judgement = await transcript.calls(client, "whose_is", object_id=thing)
         assert judgement["settled"] and judgement["source"] == "answer", judgement
-        transcript.says("Assistant", f"They are yours and Mary's. {judgement['explanation']}")
+        transcript.says("Assistant", f"It is yours and Mary's. {judgement['explanation']}")
     return "\n".join(transcript.parts)
 
 
