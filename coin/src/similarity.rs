@@ -4,7 +4,7 @@ mod clusters;
 mod quick;
 
 pub use clusters::{middles, nearest};
-pub use quick::{Code, Probe, QUICK_ERROR, Shortlist, quick_cosine};
+pub use quick::{Code, Probe, QUICK_ERROR, SIDE_BY_SIDE, Shortlist, quick_cosine, quick_cosines};
 
 /// A thing that looks like another.
 #[derive(Debug, Clone, PartialEq)]

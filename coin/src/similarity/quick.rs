@@ -22,6 +22,36 @@ pub fn quick_cosine(left: &[f32], right: &[f32]) -> f32 {
     sums.iter().sum::<f32>() + rest
 }
 
+/// How many features [`quick_cosines`] measures at once.
+pub const SIDE_BY_SIDE: usize = 16;
+
+/// How many sums are kept for each of them.
+const LANES_OF_EACH: usize = 4;
+
+/// The cosines of a feature with several others, all of length 1 and of as many dimensions, up to 512, within
+/// [`QUICK_ERROR`]. Where the others stand far apart in memory, the processor fetches them side by side, and many are
+/// measured in two thirds of the time.
+///
+/// # Panics
+/// If one of the others is shorter.
+pub fn quick_cosines(target: &[f32], others: [&[f32]; SIDE_BY_SIDE]) -> [f32; SIDE_BY_SIDE] {
+    let (chunks, rest) = target.as_chunks::<LANES_OF_EACH>();
+    let others = others.map(|other| other.as_chunks::<LANES_OF_EACH>());
+    let mut sums = [[0.0_f32; LANES_OF_EACH]; SIDE_BY_SIDE];
+    for (place, a) in chunks.iter().enumerate() {
+        for (sums, (chunks, _)) in sums.iter_mut().zip(&others) {
+            let b = &chunks[place];
+            for lane in 0..LANES_OF_EACH {
+                sums[lane] += a[lane] * b[lane];
+            }
+        }
+    }
+    std::array::from_fn(|other| {
+        let of_rest: f32 = rest.iter().zip(others[other].1).map(|(a, b)| a * b).sum();
+        sums[other].iter().sum::<f32>() + of_rest
+    })
+}
+
 /// What may be among the `k` best of those that were offered, when scores are known within an error.
 #[derive(Debug, Clone)]
 pub struct Shortlist<T> {
@@ -159,6 +189,18 @@ mod tests {
         fn a_quick_cosine_is_within_its_error(left in any_look(515), right in any_look(515)) {
             let difference = f64::from(quick_cosine(&left, &right)) - cosine(&left, &right);
             prop_assert!(difference.abs() < f64::from(QUICK_ERROR), "{difference}");
+        }
+
+        #[test]
+        fn several_quick_cosines_are_within_their_error(
+            target in any_look(515),
+            others in proptest::collection::vec(any_look(515), SIDE_BY_SIDE),
+        ) {
+            let cosines = quick_cosines(&target, std::array::from_fn(|other| others[other].as_slice()));
+            for (quick, other) in cosines.iter().zip(&others) {
+                let difference = f64::from(*quick) - cosine(&target, other);
+                prop_assert!(difference.abs() < f64::from(QUICK_ERROR), "{difference}");
+            }
         }
 
         #[test]

@@ -8,11 +8,11 @@
 //! those who do not write bring the kept looks up to date.
 
 use std::collections::{BTreeSet, HashMap};
-use std::sync::atomic::AtomicI64;
+use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-use coin::similarity::{QUICK_ERROR, Shortlist, normalise, quick_cosine};
+use coin::similarity::{QUICK_ERROR, SIDE_BY_SIDE, Shortlist, normalise, quick_cosine, quick_cosines};
 use coin_schemas::episode::FEATURE_DIMENSIONS;
 
 use super::lists::KeptLists;
@@ -164,34 +164,27 @@ impl Looks {
         } else {
             thread::available_parallelism().map_or(1, usize::from).min(THREADS)
         };
-        let share = self.blocks.len().div_ceil(threads).max(1);
-        let parts = self.blocks.chunks(share).enumerate();
-        let look = |(part, blocks): (usize, &[Arc<Block>])| {
+        // Whoever has looked through a block takes the next one, so that nobody waits for a thread that is held up.
+        let next = AtomicUsize::new(0);
+        let look = || {
             let mut list = Shortlist::new(k, QUICK_ERROR);
-            for (block, number) in blocks.iter().zip(part * share..) {
+            loop {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(block) = self.blocks.get(number) else { return list };
                 look_through(block, number, target, without, &mut list);
             }
-            list
         };
-        let mut whole = Shortlist::new(k, QUICK_ERROR);
-        if threads == 1 {
-            parts.map(look).for_each(|list| whole.join(list));
-            return whole;
-        }
         thread::scope(|scope| {
-            let mut parts = parts;
-            let first = parts.next();
-            let look = &look;
-            let others: Vec<_> = parts.map(|part| scope.spawn(move || look(part))).collect();
-            first.map(look).into_iter().for_each(|list| whole.join(list));
+            let others: Vec<_> = (1..threads).map(|_| scope.spawn(look)).collect();
+            let mut whole = look();
             for other in others {
                 match other.join() {
                     Ok(list) => whole.join(list),
                     Err(panic) => std::panic::resume_unwind(panic),
                 }
             }
-        });
-        whole
+            whole
+        })
     }
 }
 
@@ -202,12 +195,21 @@ fn look_through(
     without: &BTreeSet<ObjectKey>,
     list: &mut Shortlist<Slot>,
 ) {
-    let looks = block.components.chunks_exact(FEATURE_DIMENSIONS);
-    for ((place, owner), look) in block.owners.iter().enumerate().zip(looks) {
-        let score = quick_cosine(target, look);
+    let mut offer = |place: usize, score: f32| {
+        let owner = block.owners[place];
         if list.admits(score) && owner.is_some_and(|owner| !without.contains(&owner.object)) {
             list.offer(score, Slot { block: number, place });
         }
+    };
+    // Looks that are measured together stand a part of the block apart, so that their memory is read side by side.
+    let apart = block.owners.len() / SIDE_BY_SIDE;
+    for first in 0..apart {
+        let places: [usize; SIDE_BY_SIDE] = std::array::from_fn(|part| first + part * apart);
+        let scores = quick_cosines(target, places.map(|place| block.look(place)));
+        places.into_iter().zip(scores).for_each(|(place, score)| offer(place, score));
+    }
+    for place in apart * SIDE_BY_SIDE..block.owners.len() {
+        offer(place, quick_cosine(target, block.look(place)));
     }
 }
 
