@@ -138,6 +138,11 @@ def measure(things: int, table) -> list[str]:
     return [said for said, holds in checks.items() if not holds]
 
 
+def tell(missed: list[str]) -> None:
+    for shortfall in missed:
+        print(f"\n{shortfall}")
+
+
 def main() -> int:
     arguments = argparse.ArgumentParser(prog="clients/run scale", description=__doc__)
     arguments.add_argument("--things", type=int, action="append", help="how many things the home has [default: 100000 and 1000000]")
@@ -147,11 +152,11 @@ def main() -> int:
     table = markdown if given.markdown else aligned
     if not given.check:
         for things in given.things or [EXACT, 1_000_000]:
-            print(*measure(things, table), sep="\n\n")
+            tell(measure(things, table))
         return 0
     for _ in range(ATTEMPTS):
         missed = measure(EXACT, table)
-        print(*missed, sep="\n\n")
+        tell(missed)
         if not missed:
             return 0
     return 1

@@ -25,7 +25,8 @@ pub fn quick_cosine(left: &[f32], right: &[f32]) -> f32 {
 /// How many features [`quick_cosines`] measures at once.
 pub const SIDE_BY_SIDE: usize = 16;
 
-/// How many sums are kept for each of them.
+/// How many sums are kept for each of them: few enough for the processor, and with 512 dimensions each adds the 128
+/// products that [`QUICK_ERROR`] allows for.
 const LANES_OF_EACH: usize = 4;
 
 /// The cosines of a feature with several others, all of length 1 and of as many dimensions, up to 512, within
