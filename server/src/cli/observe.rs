@@ -16,8 +16,12 @@ use super::{Failure, failed, open, print, refused, say};
 use crate::observations::Batch;
 use crate::store::Access;
 
-/// So many detections are stored together at least, where there are as many; the views that they are of are kept whole.
-const BATCH: usize = 8_000;
+/// So many detections are stored together at least, where there are as many. What is known of a thing is written once
+/// for all of them.
+const BATCH: usize = 16_000;
+
+/// So many are stored together at most: views are kept whole, as far as one call of the tool could hold them.
+const LARGEST_BATCH: usize = BATCH + MAX_OBSERVATIONS;
 
 /// So many refused lines are told one by one.
 const TOLD_LINES: u64 = 20;
@@ -136,7 +140,7 @@ fn read(input: impl Read, filled: &SyncSender<Batch>) -> std::io::Result<()> {
         }
         let read = Line::of(&line);
         let is_within_a_view = read.view().is_some() && read.view() == last_view.as_deref();
-        let is_full = batch.len() >= if is_within_a_view { MAX_OBSERVATIONS } else { BATCH };
+        let is_full = batch.len() >= if is_within_a_view { LARGEST_BATCH } else { BATCH };
         if is_full && filled.send(std::mem::replace(&mut batch, Batch::new())).is_err() {
             return Ok(());
         }
