@@ -37,7 +37,18 @@ fn build_all() -> Result<PathBuf, String> {
     let target = profile_folder.parent().expect("cargo puts profiles into the target folder");
     let profile = profile_folder.file_name().and_then(OsStr::to_str).expect("profiles have plain names");
     let profile = if profile == "debug" { "dev" } else { profile };
-    let output = Command::new(env!("CARGO"))
+    let mut build = Command::new(env!("CARGO"));
+    // Cargo tells a test about its package, and a dependency that looks for that would be built anew here, and once more
+    // by whoever builds the programs outside a test.
+    for (name, _) in std::env::vars_os() {
+        if name
+            .to_str()
+            .is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_"))
+        {
+            build.env_remove(name);
+        }
+    }
+    let output = build
         .args(["build", "--workspace", "--bins", "--quiet", "--profile", profile])
         .env("CARGO_TARGET_DIR", target)
         .current_dir(repository())
