@@ -26,8 +26,12 @@ use coin_host::run::{EvidenceKept, ForeignCalibration, RunSettings, run_episode}
 use coin_schemas::report::Stopped;
 use coin_schemas::tools::FindDecision;
 use coin_server::output_file::{OutputFile, OutputFileError};
+use mimalloc::MiMalloc;
 use tokio_util::sync::CancellationToken;
 use tracing_subscriber::EnvFilter;
+
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// Why the program ends without its result.
 enum Failure {
