@@ -15,6 +15,9 @@ use super::migrations::{self, Identity};
 /// Statements that stay prepared. The store has some thirty.
 const PREPARED_STATEMENTS: usize = 64;
 
+/// How long a process waits between two looks at a lock that another one holds. A commit takes about as long.
+const LOCK_PAUSE: Duration = Duration::from_millis(2);
+
 /// How often opening is tried where the disk fails. A busy disk was seen to fail once and to work a moment later.
 const OPENING_TRIES: usize = 3;
 
@@ -139,8 +142,18 @@ fn open_or_create(path: &Path) -> Result<(), StoreError> {
     })
 }
 
+/// Waits a moment for another process, up to [`BUSY_SECONDS`] in all. SQLite's own waiting looks ten times a second at
+/// last, and beside a server that writes without a pause it was seen to miss every gap for five seconds.
+fn wait_for_the_lock(tries: i32) -> bool {
+    let may_wait = LOCK_PAUSE * tries.unsigned_abs() < Duration::from_secs(BUSY_SECONDS);
+    if may_wait {
+        thread::sleep(LOCK_PAUSE);
+    }
+    may_wait
+}
+
 fn prepare(connection: &mut Connection) -> Result<(), StoreError> {
-    connection.busy_timeout(Duration::from_secs(BUSY_SECONDS))?;
+    connection.busy_handler(Some(wait_for_the_lock))?;
     connection.set_prepared_statement_cache_capacity(PREPARED_STATEMENTS);
     connection.set_transaction_behavior(TransactionBehavior::Immediate);
     connection.execute_batch(
@@ -153,19 +166,14 @@ fn prepare(connection: &mut Connection) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// The size of a page of a new file, in bytes. Seven visual features fit into one; of the usual 4,096 bytes each would
-/// leave the half empty.
-const PAGE_BYTES: u32 = 16_384;
-
-/// Lets readers and a writer of several processes work at once. The mode stays in the file, as the size of its pages
-/// does, and it is not written again where it is set. SQLite gives up at once, without waiting, where two processes create the same
+/// Lets readers and a writer of several processes work at once. The mode stays in the file, and it is not
+/// written again where it is set. SQLite gives up at once, without waiting, where two processes create the same
 /// file together; so the waiting is done here.
 fn use_write_ahead_log(connection: &Connection) -> Result<(), StoreError> {
     let mode: String = connection.query_row("PRAGMA journal_mode", [], |row| row.get(0))?;
     if mode.eq_ignore_ascii_case("wal") {
         return Ok(());
     }
-    connection.pragma_update(None, "page_size", PAGE_BYTES)?;
     let deadline = Instant::now() + Duration::from_secs(BUSY_SECONDS);
     loop {
         match connection.query_row("PRAGMA journal_mode = WAL", [], |_| Ok(())).map_err(StoreError::from) {
