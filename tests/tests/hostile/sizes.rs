@@ -2,8 +2,10 @@
 
 use coin_server::transport::MESSAGE_BYTES;
 #[cfg(target_os = "linux")]
-use coin_tests::resident_memory;
-use coin_tests::{Era, HttpRequest, HttpServer, ServerProcess};
+use coin_server::transport::http::Limits;
+#[cfg(target_os = "linux")]
+use coin_tests::{Era, HttpConnection, HttpResponse, ServerProcess, resident_memory};
+use coin_tests::{HttpRequest, HttpServer};
 use serde_json::{Value, json};
 
 /// A message of `bytes` bytes, as far as they go; it would record a caption.
@@ -19,6 +21,12 @@ const TOO_LARGE: usize = 20 << 20;
 /// What a server may keep of what it refused, in KiB: as much as it keeps ready for two messages that it would take.
 #[cfg(target_os = "linux")]
 const KEPT: u64 = 40 << 10;
+
+/// What a server may keep ready for bodies, in KiB: as much as all of them may take together.
+#[cfg(target_os = "linux")]
+fn ready() -> u64 {
+    Limits::default().bodies_bytes as u64 >> 10
+}
 
 #[cfg(target_os = "linux")]
 #[test]
@@ -54,38 +62,65 @@ fn a_line_that_never_ends_takes_no_memory() {
     server.ok("list_users", json!({}));
 }
 
+/// By how many KiB twenty bodies have a server grow; each is answered with the status expected.
+#[cfg(target_os = "linux")]
+fn growth(server: &HttpServer, send: impl Fn() -> HttpResponse, expected: u16) -> u64 {
+    super::assert_serves(server);
+    let before = resident_memory(server.process());
+    for _ in 0..20 {
+        let response = send();
+        assert_eq!(response.status, expected, "{response:?}");
+    }
+    super::assert_serves(server);
+    resident_memory(server.process()).saturating_sub(before)
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_body_of_twenty_megabytes_is_refused() {
     let home = super::home();
     let server = HttpServer::start(home.db());
     let request = HttpRequest::post(large(TOO_LARGE));
-    super::assert_serves(&server);
-    let before = resident_memory(server.process());
-    for _ in 0..20 {
+    let send = || {
         let response = request.send(server.address());
-        assert_eq!(response.status, 413, "{response:?}");
         assert!(response.body.contains("16777216"), "{response:?}");
-    }
-    super::assert_serves(&server);
-    let grown = resident_memory(server.process()).saturating_sub(before);
+        response
+    };
+    let grown = growth(&server, send, 413);
     assert!(grown < KEPT, "twenty bodies of 20 MB left {grown} KiB behind");
 }
 
+#[cfg(target_os = "linux")]
 #[test]
 fn a_body_of_unknown_length_is_refused_when_it_is_too_long() {
     let home = super::home();
     let server = HttpServer::start(home.db());
-    let mut connection = coin_tests::HttpConnection::open(server.address()).unwrap();
     let head = HttpRequest::post("").head().replace("Content-Length: 0", "Transfer-Encoding: chunked");
-    connection.write(head.as_bytes()).unwrap();
     let chunk = format!("100000\r\n{}\r\n", "a".repeat(1 << 20));
-    for _ in 0..20 {
-        connection.write(chunk.as_bytes()).unwrap();
-    }
-    connection.write(b"0\r\n\r\n").unwrap();
-    assert_eq!(connection.read().unwrap().status, 413);
-    super::assert_serves(&server);
+    let send = || {
+        let mut connection = HttpConnection::open(server.address()).unwrap();
+        connection.write(head.as_bytes()).unwrap();
+        for _ in 0..20 {
+            connection.write(chunk.as_bytes()).unwrap();
+        }
+        connection.write(b"0\r\n\r\n").unwrap();
+        connection.read().unwrap()
+    };
+    let grown = growth(&server, send, 413);
+    assert!(grown < ready(), "twenty bodies of 20 MB left {grown} KiB behind");
+}
+
+/// What is worked on is forgotten as well, but for the memory that is kept ready for the next ones.
+#[cfg(target_os = "linux")]
+#[test]
+fn bodies_that_are_just_small_enough_do_not_add_up() {
+    let home = super::home();
+    let server = HttpServer::start(home.db());
+    let request = HttpRequest::post(large(MESSAGE_BYTES - large(0).len()));
+    let send = || request.send(server.address());
+    growth(&server, send, 400);
+    let grown = growth(&server, send, 400);
+    assert!(grown < ready(), "twenty more bodies of 16 MiB left {grown} KiB behind");
 }
 
 /// The largest message that is read is not answered by a crash either.

@@ -6,7 +6,7 @@ use std::net::IpAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use axum::Extension;
-use axum::body::Body;
+use axum::body::{Body, HttpBody};
 use axum::extract::{Request, State};
 use axum::http::StatusCode;
 use axum::middleware::Next;
@@ -129,12 +129,15 @@ async fn read(
     memory: &Semaphore,
 ) -> Result<(Vec<u8>, SemaphorePermit<'_>), Unusable> {
     let no_memory = |_| Unusable::NoMemory;
+    let announced = usize::try_from(body.size_hint().lower()).unwrap_or(usize::MAX);
     let mut pieces = body.into_data_stream();
-    let mut read = Vec::new();
+    // One piece of memory of the right size leaves half as much behind as growing ones do, and the system gives none of it
+    // before something is written there.
+    let mut read = Vec::with_capacity(announced.min(limit));
     let mut held = memory.try_acquire_many(0).map_err(no_memory)?;
     while let Some(piece) = pieces.next().await {
         let piece = piece.map_err(|_| Unusable::Broken)?;
-        if read.len() + piece.len() > limit {
+        if announced.max(read.len() + piece.len()) > limit {
             // It is heard to its end all the same, but nothing of it is kept.
             drop((read, held));
             pieces.for_each(|_| ready(())).await;
