@@ -118,7 +118,7 @@ fn record_usage(bencher: Bencher<'_, '_>, events: usize) {
             (folder, service(store, ServiceOptions::default()), object(json!({"captions": captions})))
         })
         .bench_values(|(folder, service, arguments)| {
-            let result = service.call("record_usage", arguments).unwrap();
+            let result = service.call("record_usage", &arguments).unwrap();
             assert_eq!(result["recorded"], events);
             folder
         });
@@ -156,7 +156,7 @@ fn get_usage_summary(bencher: Bencher<'_, '_>, events: usize) {
     let arguments = object(json!({"object_id": (objects / 2).to_string()}));
     bencher
         .with_inputs(|| arguments.clone())
-        .bench_values(|arguments| service.call("get_usage_summary", arguments).unwrap());
+        .bench_values(|arguments| service.call("get_usage_summary", &arguments).unwrap());
 }
 
 /// The same for an object at random, so that its page may have to be fetched.
@@ -170,7 +170,7 @@ fn get_usage_summary_at_random(bencher: Bencher<'_, '_>, events: usize) {
             next = (next * 6_364_136_223 + 1_442_695_041) % objects;
             object(json!({"object_id": next.to_string()}))
         })
-        .bench_local_values(|arguments| service.call("get_usage_summary", arguments).unwrap());
+        .bench_local_values(|arguments| service.call("get_usage_summary", &arguments).unwrap());
 }
 
 /// The tool that does least, for comparison.
@@ -178,7 +178,7 @@ fn get_usage_summary_at_random(bencher: Bencher<'_, '_>, events: usize) {
 fn list_users(bencher: Bencher<'_, '_>) {
     let (_folder, store) = home(34, 0);
     let service = service(store, ServiceOptions::default());
-    bencher.bench(|| service.call("list_users", JsonObject::new()));
+    bencher.bench(|| service.call("list_users", &JsonObject::new()));
 }
 
 #[divan::bench]
@@ -189,6 +189,6 @@ fn record_answer(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| {
         number += 1;
         let answer = json!({"object_id": "3", "question": "Whose is it?", "answer": format!("Bob's, as I said {number} times."), "ownership": {"Bob": true}});
-        service.call("record_answer", object(answer))
+        service.call("record_answer", &object(answer))
     });
 }

@@ -1,5 +1,7 @@
 //! Calls of tools, and the forms that a person fills in between two of them.
 
+use std::sync::{Arc, LazyLock};
+
 use rmcp::model::{
     CallToolRequestParams, CallToolResponse, CallToolResult, ContentBlock, ElicitationCapability, JsonObject,
     ProtocolVersion,
@@ -46,6 +48,8 @@ impl CoinService {
         context: &RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
         let forms = forms_of(context);
+        // A call may hold fifty thousand captions, which are not copied to the thread that works on them.
+        let request = Arc::new(request);
         let outcome = match self.run(&request, forms, None, context).await {
             Ok(Outcome::Ask(form, _)) if forms == Forms::DuringCalls => {
                 let person = self.put(form, context).await;
@@ -79,7 +83,7 @@ impl CoinService {
     /// Runs a tool. One that panics is answered like one that failed.
     async fn run(
         &self,
-        request: &CallToolRequestParams,
+        request: &Arc<CallToolRequestParams>,
         forms: Forms,
         person: Option<Person>,
         context: &RequestContext<RoleServer>,
@@ -87,7 +91,7 @@ impl CoinService {
         let done = if person.is_none() && self.is_brief(request) {
             work::run_brief(|| self.act(&self.store, request, person, forms))
         } else {
-            let (service, request) = (self.clone(), request.clone());
+            let (service, request) = (self.clone(), Arc::clone(request));
             let act = move |call: &Call| service.act(&service.store.during(call), &request, person, forms);
             work::run(&self.places, context, act).await
         };
@@ -124,8 +128,7 @@ impl CoinService {
         };
         let asks = self.tools.get(&request.name).is_some_and(Entry::asks);
         let Some(sealed) = request.request_state.as_ref().filter(|_| asks) else { return Ok(without_reply) };
-        let arguments = request.arguments.clone().unwrap_or_default();
-        let state = forms::open(store, &request.name, &arguments, sealed)
+        let state = forms::open(store, &request.name, arguments_of(request), sealed)
             .map_err(|source| Failure::Request(source.to_string()))?;
         Ok(match forms::brought_back(request.input_responses.as_ref()) {
             Some(reply) => Person::Replied { state, reply },
@@ -143,12 +146,11 @@ impl CoinService {
             .tools
             .get(&request.name)
             .ok_or_else(|| Failure::Request(self.tools.unknown(&request.name).to_string()))?;
-        let arguments = request.arguments.clone().unwrap_or_default();
+        let arguments = arguments_of(request);
         match tool.call(store, arguments, person) {
             Ok(Turn::Done(result)) => Ok(Outcome::Done(result)),
             Ok(Turn::Ask(form)) => {
-                let arguments = request.arguments.clone().unwrap_or_default();
-                let sealed = forms::seal(store, &request.name, &arguments, &form.state)
+                let sealed = forms::seal(store, &request.name, arguments, &form.state)
                     .map_err(|source| Failure::Tool(source.to_string()))?;
                 Ok(Outcome::Ask(form, sealed))
             }
@@ -164,7 +166,7 @@ impl CoinService {
     ///
     /// # Errors
     /// If there is no such tool, or if it refuses the call; the text says why.
-    pub fn call(&self, tool: &str, arguments: JsonObject) -> Result<Value, CallError> {
+    pub fn call(&self, tool: &str, arguments: &JsonObject) -> Result<Value, CallError> {
         let tool = self.tools.get(tool).ok_or_else(|| CallError::Unknown(self.tools.unknown(tool)))?;
         let turn = tool.call(&self.store, arguments, Person::OutOfReach);
         match turn.map_err(|error| CallError::Refused(error.to_string()))? {
@@ -172,6 +174,12 @@ impl CoinService {
             Turn::Ask(form) => Err(CallError::Refused(form.message)),
         }
     }
+}
+
+/// What a call is given; nothing where it says nothing of it.
+fn arguments_of(request: &CallToolRequestParams) -> &JsonObject {
+    static NONE: LazyLock<JsonObject> = LazyLock::new(JsonObject::new);
+    request.arguments.as_ref().unwrap_or(&NONE)
 }
 
 /// Whether the protocol of a request is that of 2026, in which every request stands on its own.

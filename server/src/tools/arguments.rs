@@ -7,7 +7,8 @@
 use rmcp::model::JsonObject;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde_json::{Number, Value};
+use serde::de::value::MapDeserializer;
+use serde_json::{Error, Number, Value};
 use serde_path_to_error::{Path, Segment};
 
 use super::fields::QUOTED_CHARACTERS;
@@ -15,11 +16,13 @@ use super::{Tool, ToolError};
 use crate::near_miss;
 
 /// Reads the arguments of a tool.
-pub(super) fn parse<T: Tool>(schema: &JsonObject, arguments: JsonObject) -> Result<T::Arguments, ToolError> {
-    let mut value = Value::Object(left_out_removed(schema, arguments));
-    if let Ok(arguments) = T::Arguments::deserialize(&value) {
+pub(super) fn parse<T: Tool>(schema: &JsonObject, arguments: &JsonObject) -> Result<T::Arguments, ToolError> {
+    let stated = stated(schema, arguments);
+    if let Ok(arguments) = T::Arguments::deserialize(MapDeserializer::<_, Error>::new(stated.iter().copied()))
+    {
         return Ok(arguments);
     }
+    let mut value = object(&stated);
     let schema = Value::Object(schema.clone());
     convert(&mut value, &schema);
     serde_path_to_error::deserialize(&value).map_err(|source| ToolError::Arguments {
@@ -35,7 +38,7 @@ pub(crate) fn item<T: DeserializeOwned>(schema: &JsonObject, item: &Value) -> Re
         return Ok(item);
     }
     let mut value = match item {
-        Value::Object(members) => Value::Object(left_out_removed(schema, members.clone())),
+        Value::Object(members) => object(&stated(schema, members)),
         other => other.clone(),
     };
     let schema = Value::Object(schema.clone());
@@ -47,17 +50,20 @@ pub(crate) fn item<T: DeserializeOwned>(schema: &JsonObject, item: &Value) -> Re
     })
 }
 
-/// Without the optional fields whose value says that there is none.
-fn left_out_removed(schema: &JsonObject, mut arguments: JsonObject) -> JsonObject {
+/// The members of an object but for the optional ones whose value says that there is none.
+fn stated<'a>(schema: &JsonObject, members: &'a JsonObject) -> Vec<(&'a str, &'a Value)> {
     let properties = schema.get("properties").and_then(Value::as_object);
     let required = required(schema);
-    arguments.retain(|name, value| {
+    let is_left_out = |name: &str, value: &Value| {
         let empty = value.is_null() || value.as_str() == Some("");
-        let optional =
-            properties.is_some_and(|known| known.contains_key(name)) && !required.contains(&name.as_str());
-        !(empty && optional)
-    });
-    arguments
+        empty && properties.is_some_and(|known| known.contains_key(name)) && !required.contains(&name)
+    };
+    let members = members.iter().map(|(name, value)| (name.as_str(), value));
+    members.filter(|&(name, value)| !is_left_out(name, value)).collect()
+}
+
+fn object(members: &[(&str, &Value)]) -> Value {
+    Value::Object(members.iter().map(|&(name, value)| (name.to_owned(), value.clone())).collect())
 }
 
 /// Turns texts into the numbers and truth values that the schema asks for, and numbers into texts, where they
@@ -104,7 +110,7 @@ fn convert(value: &mut Value, schema: &Value) {
 }
 
 /// What is wrong at the end of a path: an unknown field, a missing one, or a value of the wrong kind.
-fn explain(schema: &Value, arguments: &Value, path: &Path, problem: &serde_json::Error) -> String {
+fn explain(schema: &Value, arguments: &Value, path: &Path, problem: &Error) -> String {
     let mut schema = schema;
     let mut value = arguments;
     let mut name = String::new();

@@ -80,7 +80,7 @@ pub struct UnknownTool {
     known: String,
 }
 
-type Function = fn(&Store, &JsonObject, JsonObject, Person) -> Result<Turn<Value>, ToolError>;
+type Function = fn(&Store, &JsonObject, &JsonObject, Person) -> Result<Turn<Value>, ToolError>;
 
 /// A tool that is offered.
 #[derive(Debug, Clone)]
@@ -122,7 +122,7 @@ impl Entry {
     pub(crate) fn call(
         &self,
         store: &Store,
-        arguments: JsonObject,
+        arguments: &JsonObject,
         person: Person,
     ) -> Result<Turn<Value>, ToolError> {
         (self.function)(store, &self.definition.input_schema, arguments, person)
@@ -132,7 +132,7 @@ impl Entry {
 fn call<T: Tool>(
     store: &Store,
     schema: &JsonObject,
-    arguments: JsonObject,
+    arguments: &JsonObject,
     person: Person,
 ) -> Result<Turn<Value>, ToolError> {
     match T::converse(store, arguments::parse::<T>(schema, arguments)?, person)? {

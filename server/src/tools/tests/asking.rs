@@ -8,7 +8,7 @@ use crate::tools::{Form, Reply};
 
 fn ask(store: &Store, arguments: Value, person: Person) -> Result<Turn<Value>, ToolError> {
     let arguments: JsonObject = serde_json::from_value(arguments).unwrap();
-    registry().get("ask_owner").unwrap().call(store, arguments, person)
+    registry().get("ask_owner").unwrap().call(store, &arguments, person)
 }
 
 fn form(store: &Store, arguments: Value) -> Form {

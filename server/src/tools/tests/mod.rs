@@ -20,7 +20,7 @@ fn registry() -> Registry {
 
 fn call(store: &Store, tool: &str, arguments: Value) -> Result<Value, ToolError> {
     let arguments: JsonObject = serde_json::from_value(arguments).unwrap();
-    match registry().get(tool).unwrap().call(store, arguments, Person::OutOfReach)? {
+    match registry().get(tool).unwrap().call(store, &arguments, Person::OutOfReach)? {
         Turn::Done(result) => Ok(result),
         Turn::Ask(form) => panic!("{tool} gave a form to a client that shows none: {form:?}"),
     }

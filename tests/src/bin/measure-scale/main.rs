@@ -98,7 +98,7 @@ fn measure(plan: &Plan) -> Figures {
 fn call(service: &CoinService, tool: &str, part: &str, thing: usize) -> (f64, Vec<String>) {
     let arguments = json!({"object_id": thing.to_string()}).as_object().cloned().unwrap_or_default();
     let started = Instant::now();
-    let result = service.call(tool, arguments).unwrap_or_else(|error| panic!("{tool}: {error}"));
+    let result = service.call(tool, &arguments).unwrap_or_else(|error| panic!("{tool}: {error}"));
     let took = milliseconds(started);
     let id = |found: &Value| found["id"].as_str().expect("what is found has an id").to_owned();
     (took, result[part].as_array().expect("a list").iter().map(id).collect())
