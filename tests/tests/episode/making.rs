@@ -226,7 +226,7 @@ fn the_built_in_calibrations_are_what_their_commands_make() {
     let mut made = BTreeSet::new();
     for command in commands {
         assert_eq!(command[0], "host");
-        let mut program = Program::new("host").patience(std::time::Duration::from_secs(1_200));
+        let mut program = Program::new("host");
         for word in &command[1..] {
             // Folders are named in capitals.
             let is_folder =

@@ -58,3 +58,22 @@ fn a_small_house_takes_less_than_a_second() {
     println!("small-house: {:.0} ms from start to end (median of 5)", milliseconds(typical));
     assert!(typical < Duration::from_secs(1), "it took {typical:?}");
 }
+
+/// Ten trials of nine methods on 34 things.
+#[test]
+fn a_whole_experiment_takes_less_than_a_minute() {
+    if !is_wanted("a whole experiment") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let program = Program::new("host").args(["experiment", "--coverage-homes", "0", "--quiet", "--episode"]);
+    let took = program
+        .arg(small_house())
+        .arg("--out")
+        .arg(folder.path().join("results"))
+        .run()
+        .expect_code(0)
+        .duration;
+    println!("ten trials of nine methods: {:.1} s", took.as_secs_f64());
+    assert!(took < Duration::from_secs(60), "it took {took:?}");
+}
