@@ -17,6 +17,7 @@ mod anthropic;
 mod brain;
 mod faults;
 mod openai;
+mod programs;
 mod record;
 mod rules;
 mod serve;
@@ -33,6 +34,7 @@ use tokio::sync::oneshot;
 
 pub use self::brain::{Brain, EmbeddedBrain, Turn};
 pub use self::faults::{Fault, FaultPlan, Manner, Occasion, RetryAfter};
+pub use self::programs::KEY;
 pub use self::record::Recorded;
 
 use self::record::Log;

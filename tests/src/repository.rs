@@ -17,13 +17,17 @@ pub fn small_house() -> PathBuf {
     fixture("episodes/small-house")
 }
 
-/// Whether tests that take long are to run (`COIN_SLOW_TESTS=1`). Where not, says so for `name`.
+/// Whether tests that take long are to run: with `COIN_SLOW_TESTS=1`, and of optimised programs, since the figures of others
+/// say nothing. Where not, says so for `name`.
 pub fn is_slow_run(name: &str) -> bool {
     let wanted = std::env::var("COIN_SLOW_TESTS").is_ok_and(|value| value == "1");
-    if !wanted {
-        announce(&format!("{name}: skipped; COIN_SLOW_TESTS=1 runs it"));
-    }
-    wanted
+    let lacking = match (wanted, cfg!(debug_assertions)) {
+        (true, false) => return true,
+        (true, true) => "it is run with --release",
+        (false, _) => "COIN_SLOW_TESTS=1 runs it",
+    };
+    announce(&format!("{name}: skipped; {lacking}"));
+    false
 }
 
 /// Says something to whoever reads the test's output.

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use coin_tests::{Era, Home, HttpServer, small_house};
+use coin_tests::{Era, Home, HttpServer, is_slow_run, small_house};
 use rusqlite::Connection;
 use serde_json::json;
 
 use super::clients::Client;
-use super::{distribution, is_measured};
+use super::distribution;
 
 const HTTP_CLIENTS: usize = 64;
 const PIPE_CLIENTS: usize = 8;
@@ -79,7 +79,7 @@ impl Ledger {
 
 #[test]
 fn a_crowd_of_clients_is_served_and_loses_nothing() {
-    let is_measured = is_measured("crowd");
+    let is_measured = is_slow_run("crowd");
     let duration = Duration::from_secs(if is_measured { 60 } else { 3 });
     let home = Home::import(&small_house());
     let server = HttpServer::start(home.db());

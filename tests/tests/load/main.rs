@@ -10,13 +10,6 @@ mod readers;
 
 use std::time::Duration;
 
-use coin_tests::is_slow_run;
-
-/// Whether figures are taken. An unoptimised program would be measured in vain.
-fn is_measured(name: &str) -> bool {
-    !cfg!(debug_assertions) && is_slow_run(name)
-}
-
 /// The middle, the slowest of a hundred and the slowest of all, in words.
 fn distribution(times: &mut [Duration]) -> String {
     times.sort_unstable();

@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 
 use coin_schemas::household::{Background, UserName};
 use coin_server::store::{Access, Store, StoreError};
-use coin_tests::{Home, HttpServer, small_house};
+use coin_tests::{Home, HttpServer, is_slow_run, small_house};
 use rusqlite::{Connection, TransactionBehavior};
 use serde_json::json;
 
 use super::clients::Client;
-use super::{distribution, is_measured};
+use super::distribution;
 
 /// How long a write takes, in the tests.
 const HOLD: Duration = Duration::from_millis(500);
@@ -22,7 +22,7 @@ const WRITES: usize = 6;
 
 /// How long a reader may take beside a writer.
 fn limit(name: &str) -> Duration {
-    if is_measured(name) { Duration::from_millis(50) } else { HOLD / 2 }
+    if is_slow_run(name) { Duration::from_millis(50) } else { HOLD / 2 }
 }
 
 /// Reads again and again while `write` does its work; fails where a read took too long.

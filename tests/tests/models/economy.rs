@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use coin_tests::provider::{Script, ScriptedProvider};
-use coin_tests::{Program, is_slow_run, small_house};
+use coin_tests::small_house;
 use rstest::rstest;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::{KEY, count, faultless, host, questions, report, subset_accuracy, tokens, without_cost};
+use super::{count, faultless, host, questions, report, subset_accuracy, tokens, without_cost};
 
 /// The paper's scheme: the model alone, its gate, and every unasked thing inferred again after every answer. One call
 /// holds the whole context, as the paper's prompt does.
@@ -21,35 +21,6 @@ fn the_papers_scheme() -> Value {
     );
     provider.assert_no_violations();
     report
-}
-
-/// Thresholds of the scripted model, from other homes.
-fn calibrated(provider: &ScriptedProvider, folder: &TempDir, arguments: &[&str]) -> String {
-    let homes: Vec<_> = (0..20)
-        .map(|seed| {
-            let home = folder.path().join(format!("home-{seed}"));
-            Program::new("host")
-                .args(["generate", "routine", "--protocol", "week", "--seed", &(1001 + seed).to_string()])
-                .arg("--out")
-                .arg(&home)
-                .run()
-                .expect_code(0);
-            home
-        })
-        .collect();
-    let file = folder.path().join("calibration.json");
-    Program::new("host")
-        .args(["calibrate", "--quiet", "--model", "openai:scripted"])
-        .args(arguments)
-        .arg("--out")
-        .arg(&file)
-        .arg("--episode")
-        .args(&homes)
-        .env("OPENAI_BASE_URL", provider.openai_url())
-        .env("OPENAI_API_KEY", KEY)
-        .run()
-        .expect_code(0);
-    file.to_str().unwrap().to_owned()
 }
 
 /// Of the paper's calls and tokens on this very home, at most a tenth where the context is given, and at most a fifth
@@ -66,7 +37,10 @@ fn it_takes_a_fraction_of_the_papers_calls_and_tokens(#[case] arguments: &[&str]
     // The evidence model's thresholds are those that the program brings along.
     let calibration = match arguments.contains(&"evidence") {
         true => Vec::new(),
-        false => vec!["--calibration".to_owned(), calibrated(&provider, &folder, arguments)],
+        false => {
+            let file = provider.calibration(folder.path(), arguments);
+            vec!["--calibration".to_owned(), file.to_str().unwrap().to_owned()]
+        }
     };
     let calibration: Vec<&str> = calibration.iter().map(String::as_str).collect();
     let ours = report(&provider, &small_house(), &[arguments, &calibration].concat());
@@ -161,38 +135,14 @@ fn a_budget_that_is_spent_ends_a_calibration() {
     let provider = faultless();
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("calibration.json");
-    Program::new("host")
+    provider
+        .host()
         .args(["calibrate", "--quiet", "--model", "openai:scripted", "--budget", "5_000", "--out"])
         .arg(&file)
         .arg("--episode")
         .arg(small_house())
-        .env("OPENAI_BASE_URL", provider.openai_url())
-        .env("OPENAI_API_KEY", KEY)
         .run()
         .expect_code(1)
         .expect_stderr(&["the budget was spent", "--budget"]);
     assert!(!file.exists());
-}
-
-/// With answers after 300 ms, four conversations at once, and thresholds from other homes.
-#[test]
-fn a_model_that_answers_after_300_ms_is_through_in_8_seconds() {
-    if cfg!(debug_assertions) || !is_slow_run("a model that answers after 300 ms") {
-        return;
-    }
-    let folder = TempDir::new().unwrap();
-    let calibration = calibrated(&faultless(), &folder, &[]);
-    let slow = ScriptedProvider::start(Script { delay: Duration::from_millis(300), ..Script::default() });
-    let arguments = ["--calibration", &calibration, "--concurrency", "4", "--json", "--quiet"];
-    let finished = host(&slow, &small_house(), &arguments).run().expect_code(0);
-    let report = finished.json();
-    println!(
-        "{} questions, {:.3}, {} calls, {:.2} s",
-        questions(&report).len(),
-        subset_accuracy(&report),
-        count(&report, "model_calls"),
-        finished.duration.as_secs_f64()
-    );
-    assert!((subset_accuracy(&report) - 1.0).abs() < f64::EPSILON);
-    assert!(finished.duration < Duration::from_secs(8), "{:?}", finished.duration);
 }

@@ -10,22 +10,13 @@ mod terminal;
 
 use std::path::Path;
 
-use coin_tests::provider::{Script, ScriptedProvider};
+use coin_tests::provider::{KEY, Script, ScriptedProvider};
 use coin_tests::{EpisodeBuilder, Program};
 use serde_json::Value;
 
-/// A key as providers give them; nothing but the request to the provider may hold it.
-const KEY: &str = "sk-proj-Zq7xVn2LmK9tRw4bY8cD1fGh";
-
 /// `host --episode FOLDER --model openai:scripted` with this provider, and more arguments.
 fn host(provider: &ScriptedProvider, episode: &Path, arguments: &[&str]) -> Program {
-    Program::new("host")
-        .arg("--episode")
-        .arg(episode)
-        .args(["--model", "openai:scripted"])
-        .args(arguments)
-        .env("OPENAI_BASE_URL", provider.openai_url())
-        .env("OPENAI_API_KEY", KEY)
+    provider.host().arg("--episode").arg(episode).args(["--model", "openai:scripted"]).args(arguments)
 }
 
 /// The report of a run that must go well.

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::time::{Duration, Instant};
 
-use coin_tests::{Home, binary, small_house};
+use coin_tests::{Home, binary, is_slow_run, small_house};
 use serde_json::{Value, json};
 
 use super::pipe::{Pipe, call};
-use super::{is_wanted, median, microseconds, milliseconds, quantile};
+use super::{median, microseconds, milliseconds, quantile};
 
 const STARTS: usize = 20;
 const CALLS: usize = 2_000;
@@ -16,7 +16,7 @@ const WARM_UP: usize = 300;
 
 #[test]
 fn a_server_answers_within_fifteen_milliseconds_of_its_start() {
-    if !is_wanted("start") {
+    if !is_slow_run("start") {
         return;
     }
     let home = Home::import(&small_house());
@@ -70,7 +70,7 @@ fn compare(pipe: &mut Pipe, one: &str, other: &str) -> [Duration; 2] {
 
 #[test]
 fn a_usage_summary_takes_little_more_time_than_a_trivial_tool() {
-    if !is_wanted("get_usage_summary") {
+    if !is_slow_run("get_usage_summary") {
         return;
     }
     let home = Home::import(&small_house());

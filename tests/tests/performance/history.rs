@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use coin_tests::{EpisodeBuilder, Home};
+use coin_tests::{EpisodeBuilder, Home, is_slow_run};
 use rusqlite::Connection;
 use serde_json::json;
 
 use super::pipe::{Pipe, call};
-use super::{is_wanted, median, microseconds};
+use super::{median, microseconds};
 
 /// The other things of the home.
 const OTHERS: usize = 1_000;
@@ -63,7 +63,7 @@ fn fill(db: &Path, events_each: usize) {
 
 #[test]
 fn ten_million_events_do_not_slow_a_summary_down() {
-    if !is_wanted("ten million events") {
+    if !is_slow_run("ten million events") {
         return;
     }
     let many: usize = std::env::var("COIN_SLOW_EVENTS")

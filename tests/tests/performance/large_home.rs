@@ -2,12 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use coin_tests::{EpisodeBuilder, Program};
+use coin_tests::{EpisodeBuilder, Program, is_slow_run};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Map, Value, json};
-
-use super::is_wanted;
 
 const THINGS: usize = 2000;
 const PEOPLE: [&str; 8] = ["Ann", "Bob", "Cem", "Dora", "Eva", "Finn", "Gina", "Hans"];
@@ -65,7 +63,7 @@ fn large_home() -> EpisodeBuilder {
 
 #[test]
 fn a_home_of_2000_things_and_8_people_with_a_year_of_captions_settles_in_10_seconds() {
-    if !is_wanted("a large home") {
+    if !is_slow_run("a large home") {
         return;
     }
     let folder = large_home().write();

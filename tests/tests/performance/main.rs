@@ -11,16 +11,8 @@ mod writing;
 
 use std::time::{Duration, Instant};
 
+use coin_tests::provider::{Script, ScriptedProvider};
 use coin_tests::{Program, is_slow_run, small_house};
-
-/// Whether `name` is to be measured. An unoptimised program would be measured in vain.
-fn is_wanted(name: &str) -> bool {
-    if cfg!(debug_assertions) {
-        println!("{name}: skipped; figures are taken with --release");
-        return false;
-    }
-    is_slow_run(name)
-}
 
 fn milliseconds(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
@@ -43,7 +35,7 @@ fn median(durations: &mut [Duration]) -> Duration {
 
 #[test]
 fn a_small_house_takes_less_than_a_second() {
-    if !is_wanted("small-house") {
+    if !is_slow_run("small-house") {
         return;
     }
     let mut durations: Vec<Duration> = (0..5)
@@ -62,7 +54,7 @@ fn a_small_house_takes_less_than_a_second() {
 /// Ten trials of nine methods on 34 things.
 #[test]
 fn a_whole_experiment_takes_less_than_a_minute() {
-    if !is_wanted("a whole experiment") {
+    if !is_slow_run("a whole experiment") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -76,4 +68,33 @@ fn a_whole_experiment_takes_less_than_a_minute() {
         .duration;
     println!("ten trials of nine methods: {:.1} s", took.as_secs_f64());
     assert!(took < Duration::from_secs(60), "it took {took:?}");
+}
+
+/// With four conversations at once, and thresholds from other homes.
+#[test]
+fn a_model_that_answers_after_300_ms_is_through_in_8_seconds() {
+    if !is_slow_run("a model that answers after 300 ms") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let calibration = ScriptedProvider::start(Script::default()).calibration(folder.path(), &[]);
+    let slow = ScriptedProvider::start(Script { delay: Duration::from_millis(300), ..Script::default() });
+    let finished = slow
+        .host()
+        .args(["--model", "openai:scripted", "--concurrency", "4", "--json", "--quiet", "--calibration"])
+        .arg(calibration)
+        .arg("--episode")
+        .arg(small_house())
+        .run()
+        .expect_code(0);
+    let report = finished.json();
+    let accuracy = report["metrics"]["overall"]["subset_accuracy"].as_f64().unwrap();
+    println!(
+        "{} questions, {accuracy:.3}, {} calls, {:.2} s",
+        report["metrics"]["questions"],
+        report["cost"]["model_calls"],
+        finished.duration.as_secs_f64()
+    );
+    assert!((accuracy - 1.0).abs() < f64::EPSILON, "{accuracy}");
+    assert!(finished.duration < Duration::from_secs(8), "{:?}", finished.duration);
 }

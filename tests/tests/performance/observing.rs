@@ -7,11 +7,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use coin_schemas::tools::Observation;
-use coin_tests::Program;
+use coin_tests::{Program, is_slow_run};
 use rstest::rstest;
 use rusqlite::Connection;
-
-use super::is_wanted;
 
 /// Things in a row, half a metre from the next row; a view shows one row.
 const IN_A_ROW: usize = 20;
@@ -108,7 +106,7 @@ fn time_of_a_copy(detections: &Path, database: &Path) -> Duration {
 #[case::without_features("without features", Vec::new())]
 #[case::with_features("with features", features())]
 fn many_detections_a_minute_are_taken_in(#[case] name: &str, #[case] features: Vec<String>) {
-    if !is_wanted("observe") {
+    if !is_slow_run("observe") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -3,10 +3,9 @@
 use std::fs;
 use std::time::Instant;
 
-use coin_tests::{Home, Program, small_house};
+use coin_tests::{Home, Program, is_slow_run, small_house};
 use serde_json::{Value, json};
 
-use super::is_wanted;
 use super::pipe::{Pipe, call};
 
 /// How often the week of the fixture is repeated, each time in another year.
@@ -32,7 +31,7 @@ fn captions() -> Vec<Value> {
 
 #[test]
 fn an_import_takes_a_hundred_thousand_captions_a_second() {
-    if !is_wanted("import") {
+    if !is_slow_run("import") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -62,7 +61,7 @@ fn an_import_takes_a_hundred_thousand_captions_a_second() {
 
 #[test]
 fn record_usage_takes_a_hundred_thousand_captions_a_second() {
-    if !is_wanted("record_usage") {
+    if !is_slow_run("record_usage") {
         return;
     }
     let home = Home::import(&small_house());
