@@ -48,7 +48,7 @@ fn the_documented_tables_are_what_the_command_makes() {
     reaches_what_it_is_to_reach(&results(&out));
 }
 
-/// COIN at least as right as the paper with at most eight questions; a fifth of the calls and tokens of the paper's
+/// COIN at least as right as the paper with at most five questions; a tenth of the calls and tokens of the paper's
 /// scheme.
 fn reaches_what_it_is_to_reach(found: &Value) {
     for method in found["methods"].as_object().unwrap().keys() {
@@ -61,10 +61,10 @@ fn reaches_what_it_is_to_reach(found: &Value) {
         );
     }
     assert!(mean(found, "coin", "subset_accuracy") >= 0.988);
-    assert!(mean(found, "coin", "questions") <= 8.0);
+    assert!(mean(found, "coin", "questions") <= 5.0);
     for cost in ["model_calls", "tokens"] {
         let (ours, papers) = (mean(found, "coin", cost), mean(found, "coin_paper", cost));
-        assert!(5.0 * ours <= papers, "{cost}: {ours} against {papers}");
+        assert!(10.0 * ours <= papers, "{cost}: {ours} against {papers}");
     }
 }
 

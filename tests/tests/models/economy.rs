@@ -1,4 +1,4 @@
-//! What a language model costs: calls, tokens and time, against the paper's scheme on the same home.
+//! What a language model costs: calls and tokens, against the paper's scheme on the same home.
 
 use std::time::Duration;
 
